@@ -1,0 +1,78 @@
+// The cell file: one TOML file that describes a machining cell (contracts.md, "The cell file"). Reading it checks every
+// key: unknown keys, wrong types and values out of range are InputErrors with file, line and key.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/files/input_error.hpp"
+#include "models/machining.hpp"
+#include "rt/signals.hpp"
+
+namespace stillcut {
+
+struct RegionSettings {
+  std::vector<std::array<double, 2>> polygon;               // m
+  std::vector<std::vector<std::array<double, 2>>> islands;  // m
+};
+
+struct DynamicsSettings {
+  std::filesystem::path map;  // folder, absolute
+  bool modal = true;          // interpolation = "modal" | "frf"
+  double power = 1.0;
+  std::string posture;  // id, six joint angles in degrees, or x,y,z in mm; may be empty
+};
+
+struct AccelerometerSettings {
+  double sample_rate_hz = 0.0;
+  std::array<std::string, 3> axis;   // "Message.Signal{a..b}" for x, y, z; empty: not measured
+  std::string counter;               // "Message.Signal"; empty: none
+  double unit_m_per_s2 = 1.0;        // 1 for m/s^2, 9.80665 for g
+  std::array<double, 3> rotation{};  // rad, sensor to tool frame, about x, y, z in turn
+  int line = 0;                      // where the table stands in the cell file, for messages
+};
+
+struct CanSettings {
+  std::string bus;            // socketcan:IFACE | log:FILE (absolute) | local:NAME
+  std::filesystem::path dbc;  // absolute
+  std::vector<AccelerometerSettings> accelerometers;
+  std::string spindle_speed;  // "Message.Signal"; empty: none
+  int line = 0;
+};
+
+struct Cell {
+  std::filesystem::path file;  // as given on the command line
+  // Sections that are absent stay empty: a command asks only for what it needs, through the require_* functions.
+  std::optional<Tool> tool;
+  std::optional<Material> material;
+  std::optional<Cut> cut;
+  std::optional<RegionSettings> region;
+  std::optional<SpindleLimits> spindle;
+  std::optional<DynamicsSettings> dynamics;
+  std::optional<CanSettings> can;
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  RuntimeMode mode = RuntimeMode::shadow;
+};
+
+// The files named in a cell that must be there. A command that needs fewer says so: `lobes` needs no CAN, and `replay`
+// with --can no bus: read_cell(file, {.bus = false}).
+struct CellNeeds {
+  bool map = true;  // the folder [dynamics] map
+  bool dbc = true;  // the file [can] dbc
+  bool bus = true;  // the key [can] bus and, where it is log:FILE, the file
+};
+
+// Reads and checks a cell file. Throws InputError.
+Cell read_cell(const std::filesystem::path& file, const CellNeeds& needs = {});
+
+// The section, or an InputError "FILE: [tool] is missing; CELL needs it for ..." that names it.
+template <class Section>
+const Section& require(const Cell& cell, const std::optional<Section>& section, const char* name) {
+  if (!section) throw InputError(cell.file.string(), 0, std::string("[") + name + "] is missing; add this section");
+  return *section;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,25 @@
+// The sections of the cell file, each read from its TOML table and turned into SI units. All throw InputError; the
+// caller finishes the file's root.
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/files/cell.hpp"
+#include "drivers/files/toml_section.hpp"
+
+namespace stillcut {
+
+// Machining (cell_machining.cpp). A cut's radial depth is compared with the tool's diameter when the cell has a tool.
+Tool read_tool(TomlSection section);
+Material read_material(TomlSection section);
+Cut read_cut(TomlSection section, const std::optional<Tool>& tool);
+RegionSettings read_region(TomlSection section);
+SpindleLimits read_spindle(TomlSection section);
+
+// Devices and files (cell_devices.cpp). `folder` is where relative paths start.
+DynamicsSettings read_dynamics(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs);
+CanSettings read_can(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs);
+std::string read_lcm_url(TomlSection section, const std::string& fallback);
+RuntimeMode read_runtime_mode(TomlSection section);
+
+}  // namespace stillcut

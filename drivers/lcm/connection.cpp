@@ -1,0 +1,20 @@
+#include "drivers/lcm/connection.hpp"
+
+#include <lcm/lcm-cpp.hpp>
+
+#include "drivers/files/input_error.hpp"
+
+namespace stillcut {
+
+LcmConnection open_lcm(const std::string& url) {
+  auto connection = std::make_shared<lcm::LCM>(url);
+  if (!connection->good()) {
+    throw ComponentError(
+        "LCM cannot be reached at " + url +
+        "; check the address, and where no network carries multicast run: ip link set lo multicast on; "
+        "ip route add 224.0.0.0/4 dev lo");
+  }
+  return connection;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,51 @@
+// Reads the robot's messages from a log that lcm-logger wrote, for playback.
+//
+// An event of the file is, all big endian: the word 0xEDA1DA01, event number (8 bytes), time in microseconds (8),
+// length of the channel's name (4), length of the data (4), name, data. A damaged part is skipped up to the next event.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "drivers/lcm/messages.hpp"
+
+namespace stillcut {
+
+using RobotMessage = std::variant<RobotState, CorrectionAck>;  // stamp_ns: the time of the log's event
+
+class LcmLogReader {
+ public:
+  // Throws InputError when the file is missing, a folder, unreadable, or holds no whole event at all.
+  explicit LcmLogReader(const std::filesystem::path& file);
+
+  // The next message on ROBOT_STATE or ROBOT_ACK, in the file's order; nothing at its end.
+  std::optional<RobotMessage> next();
+
+  [[nodiscard]] std::int64_t events() const noexcept { return events_; }  // whole ones, of every channel
+  // Damaged parts (a last event cut short too), and robot messages that cannot be trusted.
+  [[nodiscard]] std::int64_t bad() const noexcept { return bad_; }
+
+ private:
+  struct LogEvent {
+    std::int64_t stamp_ns = 0;
+    std::string channel;
+    MessageBytes data;  // of the robot's channels only
+  };
+
+  std::optional<LogEvent> next_event();
+  std::optional<LogEvent> read_event_here();
+  void skip_to_sync_word();
+  bool read_at(std::int64_t position, std::span<std::uint8_t> bytes);
+
+  std::ifstream in_;
+  std::int64_t position_ = 0;  // of the next event
+  std::int64_t size_ = 0;
+  std::int64_t events_ = 0;
+  std::int64_t bad_ = 0;
+};
+
+}  // namespace stillcut

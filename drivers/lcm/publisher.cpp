@@ -1,0 +1,33 @@
+#include "drivers/lcm/publisher.hpp"
+
+#include <lcm/lcm-cpp.hpp>
+#include <string>
+
+namespace stillcut {
+
+bool Publisher::publish(const Output& output) {
+  switch (output.type) {
+    case Output::Type::event:
+      return send(kEventChannel, encode(output.event));
+    case Output::Type::correction:
+      return send(kCorrectionChannel, encode(output.correction));
+    case Output::Type::status:
+      return send(kStatusChannel, encode(output.status));
+  }
+  return false;
+}
+
+bool Publisher::publish(const RobotState& state) { return send(kRobotStateChannel, encode(state)); }
+
+bool Publisher::publish(const CorrectionAck& ack, std::string_view reason) {
+  return send(kRobotAckChannel, encode(ack, reason));
+}
+
+bool Publisher::send(std::string_view channel, const MessageBytes& bytes) {
+  const bool ok =
+      connection_->publish(std::string(channel), bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
+  (ok ? sent_ : failed_).fetch_add(1, std::memory_order_relaxed);
+  return ok;
+}
+
+}  // namespace stillcut

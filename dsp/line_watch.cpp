@@ -1,0 +1,181 @@
+#include "dsp/line_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dsp/tone.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr float kTiniestFloor = 1e-12F;  // (m/s^2)^2: a sensor at perfect rest must not divide by nothing
+
+bool smooth(int n) noexcept {
+  for (const int factor : {2, 3, 5}) {
+    while (n % factor == 0) n /= factor;
+  }
+  return n == 1;
+}
+
+}  // namespace
+
+int window_length(double sample_rate_hz, double duration_s) noexcept {
+  int eighth = std::max(8, static_cast<int>(std::ceil(sample_rate_hz * duration_s / 8.0 - 1e-9)));
+  while (!smooth(eighth)) ++eighth;
+  return 8 * eighth;
+}
+
+LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings)
+    : axes_{axes},
+      length_{stillcut::window_length(sample_rate_hz, settings.window_s)},
+      kept_{kWindowsKept * length_},
+      hop_{length_ / kHopsAWindow},
+      bins_{length_ / 2 + 1},
+      first_{std::max(2, static_cast<int>(std::ceil(settings.lowest_hz * length_ / sample_rate_hz)))},
+      last_{static_cast<int>(settings.highest_of_rate * length_)},
+      bin_hz_{sample_rate_hz / length_},
+      settings_{settings},
+      fft_{length_},
+      window_(length_),
+      windowed_(length_),
+      spectrum_(bins_),
+      inverse_limit_(bins_),
+      ratio_(bins_, 0.0F) {
+  float sum = 0.0F;
+  for (int n = 0; n < length_; ++n) {
+    window_[n] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * n / length_));
+    sum += window_[n];
+  }
+  power_scale_ = 4.0F / (sum * sum);  // a sine of amplitude A gives A^2
+  for (int a = 0; a < axes_; ++a) {
+    residual_[a].assign(2 * kept_, 0.0F);
+    power_[a].assign(bins_, 0.0F);
+    floor_[a].assign(bins_, 0.0F);
+  }
+  for (auto& hop : history_) hop.assign(bins_, 0.0F);
+  settings_.floor_memory_s = std::max(settings.floor_memory_s, settings.window_s);
+  set_prior({}, std::nan(""));
+}
+
+bool LineWatch::push(std::span<const float> residual) noexcept {
+  if (filled_ == 0 && begin_ + kept_ + hop_ > 2 * kept_) make_room();
+  const int at = begin_ + kept_ + filled_;  // past the end: kept() stays whole until the hop is complete
+  for (int a = 0; a < axes_; ++a) residual_[a][at] = residual[a];
+  if (++filled_ < hop_) return false;
+  begin_ += hop_;
+  if (hops_in_window_ < kHopsAWindow) ++hops_in_window_;
+  if (hops_in_window_ == kHopsAWindow) {
+    transform();
+    judge();
+    find_candidates();
+  } else {
+    found_ = 0;
+  }
+  filled_ = 0;
+  return true;
+}
+
+void LineWatch::make_room() noexcept {
+  for (int a = 0; a < axes_; ++a) {
+    std::copy_n(residual_[a].begin() + begin_, kept_, residual_[a].begin());
+  }
+  begin_ = 0;
+}
+
+void LineWatch::transform() noexcept {
+  for (int a = 0; a < axes_; ++a) {
+    const float* const newest = window(a).data();
+    for (int n = 0; n < length_; ++n) windowed_[n] = newest[n] * window_[n];
+    fft_.transform(windowed_, spectrum_);
+    for (int b = first_; b <= last_; ++b) power_[a][b] = power_scale_ * std::norm(spectrum_[b]);
+  }
+}
+
+void LineWatch::judge() noexcept {
+  auto& newest = history_[history_at_];
+  history_at_ = (history_at_ + 1) % kHopsToStay;
+  std::fill(newest.begin(), newest.end(), 0.0F);
+  const float hop_s = static_cast<float>(hop_ / (bin_hz_ * length_));
+  const float settled = 1.0F - std::exp(-hop_s / static_cast<float>(settings_.floor_memory_s));
+  const float gain = floor_held_ ? 0.0F : std::max(settled, 1.0F / static_cast<float>(floor_hops_ + 1));
+  const auto clip = static_cast<float>(settings_.floor_clip);
+  for (int a = 0; a < axes_; ++a) {
+    float* const floor = floor_[a].data();
+    const float* const power = power_[a].data();
+    if (floor_hops_ == 0) std::copy(power + first_, power + last_ + 1, floor + first_);
+    // What all bins have gained together is a change of the cut or a knock, not a line.
+    float common = 0.0F;
+    for (int b = first_; b <= last_; ++b) common += std::min(power[b] / std::max(floor[b], kTiniestFloor), 6.0F);
+    common = std::max(1.0F, common / static_cast<float>(last_ - first_ + 1));
+    const float per_common = 1.0F / common;
+    for (int b = first_; b <= last_; ++b) {
+      const float f = std::max(floor[b], kTiniestFloor);
+      newest[b] = std::max(newest[b], power[b] / f * per_common);
+      floor[b] = f + gain * (std::min(power[b], clip * common * f) - f);
+    }
+  }
+  if (!floor_held_) floor_hops_ = std::min(floor_hops_ + 1, 1 << 20);
+  for (int b = first_; b <= last_; ++b) {
+    float least = history_[0][b];
+    for (int h = 1; h < kHopsToStay; ++h) least = std::min(least, history_[h][b]);
+    ratio_[b] = least * inverse_limit_[b];
+  }
+}
+
+void LineWatch::find_candidates() noexcept {
+  std::array<int, kCandidates> peak{};
+  found_ = 0;
+  for (int b = first_ + 1; b < last_; ++b) {
+    const float ratio = ratio_[b];
+    if (ratio < ratio_[b - 1] || ratio <= ratio_[b + 1]) continue;
+    if (found_ == kCandidates && ratio <= ratio_[peak[found_ - 1]]) continue;
+    std::size_t at = found_ < kCandidates ? found_++ : kCandidates - 1;
+    for (; at > 0 && ratio_[peak[at - 1]] < ratio; --at) peak[at] = peak[at - 1];
+    peak[at] = b;
+  }
+  for (std::size_t c = 0; c < found_; ++c) {
+    const int b = peak[c];
+    int axis = 0;
+    for (int a = 1; a < axes_; ++a) {
+      if (power_[a][b] * floor_[axis][b] > power_[axis][b] * floor_[a][b]) axis = a;
+    }
+    const auto& p = power_[axis];
+    const double offset =
+        std::clamp(hann_peak_offset(std::sqrt(p[b - 1]), std::sqrt(p[b]), std::sqrt(p[b + 1])), -1.0, 1.0);
+    candidates_[c] = {(b + offset) * bin_hz_, ratio_[b], axis};
+  }
+}
+
+double LineWatch::ratio_at(double frequency_hz) const noexcept {
+  const int b = static_cast<int>(std::lround(frequency_hz / bin_hz_));
+  if (b <= first_ || b >= last_) return 0.0;
+  return std::max({ratio_[b - 1], ratio_[b], ratio_[b + 1]});
+}
+
+void LineWatch::relearn_floor() noexcept { floor_hops_ = std::min(floor_hops_, kHopsToLearn / 4); }
+
+void LineWatch::clear_window() noexcept {
+  for (int a = 0; a < axes_; ++a) std::fill(residual_[a].begin(), residual_[a].end(), 0.0F);
+  for (auto& hop : history_) std::fill(hop.begin(), hop.end(), 0.0F);
+  hops_in_window_ = 0;
+  filled_ = 0;
+  found_ = 0;
+}
+
+void LineWatch::set_prior(std::span<const ExpectedMode> modes, double margin) noexcept {
+  // Predicted unstable: believe sooner; predicted stable with room: ask for more. At most a factor of two in power.
+  const double by_margin = std::isnan(margin) ? 1.0 : std::clamp(1.0 + 0.5 * margin, 0.7, 1.4);
+  for (int b = 0; b < bins_; ++b) {
+    double by_mode = 1.0;
+    for (const ExpectedMode& mode : modes) {
+      // Chatter stands within some tenths of the mode; the map's own error widens that.
+      const double width = mode.frequency_hz * (0.05 + 2.0 * mode.damping_ratio);
+      const double away = std::abs(b * bin_hz_ - mode.frequency_hz) / width;
+      by_mode = std::min(by_mode, away < 1.0 ? 0.7 : 1.0);
+    }
+    inverse_limit_[b] = static_cast<float>(1.0 / (settings_.limit * by_mode * by_margin));
+  }
+}
+
+}  // namespace stillcut

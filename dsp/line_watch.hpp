@@ -1,0 +1,106 @@
+// Watches the spectrum of a residual for lines that stand out of their own past: the narrow-band half of chatter
+// detection.
+//
+// Every hop (an eighth of a 25 ms Hann window) the power P of each bin is held against its running floor F. The
+// statistic S = P / F, divided by the broad-band rise common to all bins, must stay above the bin's limit for half a
+// window. The floor is the clipped running mean of the same bin, so a constant false-alarm rate needs no level to be
+// set; the limit is lower near modes that the dynamics map predicts and follows the predicted margin (the prior).
+// docs/detection.md.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "dsp/fft.hpp"
+
+namespace stillcut {
+
+struct ExpectedMode {
+  double frequency_hz = 0.0;
+  double damping_ratio = 0.0;
+};
+
+struct LineWatchSettings {
+  double window_s = 0.025;
+  double lowest_hz = 100.0;
+  double highest_of_rate = 0.4;  // of the sample rate
+  double limit = 16.0;           // of S, without prior
+  double floor_memory_s = 1.0;
+  double floor_clip = 4.0;  // a single window raises the floor by no more than this times itself
+};
+
+struct LineCandidate {
+  double frequency_hz = 0.0;  // to a fraction of a bin
+  double ratio = 0.0;         // S over its limit
+  int axis = 0;               // where it is strongest
+};
+
+class LineWatch {
+ public:
+  static constexpr int kCandidates = 3;
+  static constexpr int kWindowsKept = 4;
+
+  LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings);
+
+  // One residual sample of every axis; true when it completes a hop and the results below are new.
+  bool push(std::span<const float> residual) noexcept;
+
+  // Of the newest hop: the strongest separate lines, strongest first, and the largest S over its limit.
+  [[nodiscard]] std::span<const LineCandidate> candidates() const noexcept { return {candidates_.data(), found_}; }
+  [[nodiscard]] double largest_ratio() const noexcept { return found_ > 0 ? candidates_[0].ratio : 0.0; }
+
+  // S over its limit at a frequency, the largest of the bin and its neighbours.
+  [[nodiscard]] double ratio_at(double frequency_hz) const noexcept;
+
+  // The newest window of an axis, oldest sample first, and all that is kept of it: kWindowsKept windows.
+  [[nodiscard]] std::span<const float> window(int axis) const noexcept {
+    return kept(axis).last(static_cast<std::size_t>(length_));
+  }
+  [[nodiscard]] std::span<const float> kept(int axis) const noexcept {
+    return std::span{residual_[axis]}.subspan(static_cast<std::size_t>(begin_), static_cast<std::size_t>(kept_));
+  }
+  [[nodiscard]] int window_length() const noexcept { return length_; }
+  [[nodiscard]] int hop_length() const noexcept { return hop_; }
+
+  // The floor has seen enough to judge by.
+  [[nodiscard]] bool ready() const noexcept { return floor_hops_ >= kHopsToLearn; }
+  // Keeps the floor as it is (chatter must not become its own floor).
+  void hold_floor(bool hold) noexcept { floor_held_ = hold; }
+  // Lets the floor follow quickly again (a new cut has its own noise).
+  void relearn_floor() noexcept;
+  // Forgets window and history, keeps the floor (after a gap).
+  void clear_window() noexcept;
+
+  // Prior: modes at which chatter is expected, and the predicted margin (NaN: unknown).
+  void set_prior(std::span<const ExpectedMode> modes, double margin) noexcept;
+
+ private:
+  static constexpr int kHopsAWindow = 8, kHopsToStay = 4, kHopsToLearn = 32;
+
+  void make_room() noexcept;
+  void transform() noexcept;
+  void judge() noexcept;
+  void find_candidates() noexcept;
+
+  int axes_, length_, kept_, hop_, bins_, first_, last_;  // bins first_..last_ are watched
+  double bin_hz_;
+  LineWatchSettings settings_;
+  RealFft fft_;
+  std::vector<float> window_, windowed_;
+  std::vector<std::complex<float>> spectrum_;
+  std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
+  std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
+  std::vector<float> inverse_limit_, ratio_;
+  int begin_ = 0, filled_ = 0, hops_in_window_ = 0, history_at_ = 0, floor_hops_ = 0;
+  float power_scale_;
+  bool floor_held_ = false;
+  std::array<LineCandidate, kCandidates> candidates_{};
+  std::size_t found_ = 0;
+};
+
+// Window length for a duration: a multiple of 8 whose half is even and a product of 2, 3 and 5.
+int window_length(double sample_rate_hz, double duration_s) noexcept;
+
+}  // namespace stillcut

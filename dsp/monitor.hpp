@@ -1,0 +1,111 @@
+// The chatter monitor: samples and spindle speed in, what the cut is doing and events out. It holds no clock, no socket, no
+// thread and no random number: time comes with the data, so a recording gives the live run's decisions bit for bit.
+// How it decides: docs/detection.md. After construction nothing here allocates, locks or throws; one thread calls it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dsp/cut_gate.hpp"
+#include "dsp/line_watch.hpp"
+#include "dsp/sample_clock.hpp"
+#include "dsp/sensor_path.hpp"
+#include "dsp/signals.hpp"
+#include "dsp/spindle_speed.hpp"
+#include "dsp/tone.hpp"
+
+namespace stillcut {
+
+struct MonitorSettings {
+  std::vector<SensorSettings> sensors;  // at most kMaxSensors
+  double highest_speed = 0.0;           // rad/s; far beyond it a reading is implausible; 0: no limit known
+  double nominal_speed = 0.0;           // rad/s, used where the cell has no speed signal
+  bool has_speed_signal = true;
+  LineWatchSettings watch{};
+  CutGateSettings gate{};
+  double release_ratio = 0.25;  // of the limit on S (half of it in amplitude): below it chatter has ended
+  double release_s = 0.1;       // for this long
+};
+
+// What the monitor thinks at the newest hop.
+struct MonitorView {
+  std::int64_t stamp_ns = 0;  // of the newest sample used
+  State state = State::idle;
+  double indicator = 0.0;     // 1 is the alarm limit; NaN when it cannot tell
+  double speed = 0.0;         // measured, rad/s
+  bool chatter = false;
+  ChatterKind kind = ChatterKind::unknown;
+  double chatter_frequency_hz = 0.0;  // NaN without chatter
+  double chatter_amplitude = 0.0;     // m/s^2
+  std::uint32_t doubts = kNoDoubt;
+  std::int64_t samples_lost = 0;
+};
+
+class Monitor {
+ public:
+  explicit Monitor(const MonitorSettings& settings);
+
+  // Time zero of notes such as "start=3.612" (the first frame's stamp).
+  void set_origin(std::int64_t stamp_ns) noexcept { origin_ns_ = stamp_ns; }
+
+  void add_speed(const SpindleReading& reading) noexcept;
+  void add_samples(const SampleBlock& block) noexcept;
+  // Time has passed without data: raises the doubts of silence at the moment each fell due.
+  void advance(std::int64_t now_ns) noexcept;
+  // Prediction as a prior: modes of the present posture and the predicted margin (NaN: unknown).
+  void expect(std::span<const ExpectedMode> modes, double margin) noexcept;
+
+  [[nodiscard]] const MonitorView& view() const noexcept { return view_; }
+  // Events decided since clear_events(), in order.
+  [[nodiscard]] std::span<const Event> events() const noexcept { return {events_.data(), event_count_}; }
+  void clear_events() noexcept { event_count_ = 0; }
+
+ private:
+  struct Sensor {
+    SampleClock clock;
+    SensorPath path;
+    std::int64_t last_arrival_ns = 0;
+    std::int64_t last_loss_event_ns = 0;
+    std::int64_t losses = 0;
+    bool heard = false;
+  };
+  enum class Line : std::uint8_t { nothing, on_order, free };
+
+  void finish_hop(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
+  void look_for_onset(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
+  void end_chatter(std::int64_t stamp_ns, const char* why) noexcept;
+  [[nodiscard]] Line classify(const SensorPath& path, const LineCandidate& candidate, const Tone& tone) const noexcept;
+  [[nodiscard]] double away_from_order(double frequency_hz) const noexcept;
+  [[nodiscard]] ChatterKind name_kind(double frequency_hz) const noexcept;
+  void report_lost_frames(Sensor& sensor, std::int64_t samples_lost, std::int64_t stamp_ns) noexcept;
+  void set_doubts(std::uint32_t mask, std::uint32_t doubts, std::int64_t stamp_ns, double seconds) noexcept;
+  [[nodiscard]] std::int64_t silence_due_ns(const Sensor& sensor) const noexcept;
+  void update_silence(std::int64_t stamp_ns, double step_s) noexcept;
+  void update_speed_doubts(std::int64_t stamp_ns, double step_s) noexcept;
+  void emit(std::int64_t stamp_ns, EventType type, ChatterKind kind, double frequency_hz, const char* note) noexcept;
+
+  static constexpr std::size_t kMaxEvents = 64, kMaxModes = 16;
+
+  MonitorSettings settings_;
+  std::vector<Sensor> sensors_;
+  SpindleSpeed speed_;
+  CutGate gate_;
+  MonitorView view_;
+  std::int64_t origin_ns_ = 0, first_sample_ns_ = 0, newest_ns_ = 0;
+  std::array<ExpectedMode, kMaxModes> modes_{};
+  std::size_t mode_count_ = 0;
+  double steady_s_ = 0.0;  // how long speed and contact have been unchanged
+  std::uint32_t speed_fault_ = kNoDoubt;
+  std::array<double, kDoubtCount> clear_for_s_{};
+  // The episode of chatter that is open.
+  std::size_t chatter_sensor_ = 0;
+  double below_s_ = 0.0, doubt_s_ = 0.0;
+  int free_hops_ = 0;
+  std::array<Event, kMaxEvents> events_{};
+  std::size_t event_count_ = 0;
+};
+
+}  // namespace stillcut

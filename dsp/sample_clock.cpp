@@ -1,0 +1,38 @@
+#include "dsp/sample_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillcut {
+namespace {
+
+// An arrival this far from where the count puts it is not jitter: the stream stopped, or the counter wrapped unseen.
+constexpr double kJump_ns = 100e6;
+// Share of its lateness by which a block moves the clock: slow enough to keep jitter out, fast enough for a sensor whose
+// rate is some hundreds of ppm off (lateness settles at drift per block over this share).
+constexpr double kFollowLate = 2e-3;
+
+}  // namespace
+
+SampleClock::Placed SampleClock::place(std::int64_t arrival_ns, int samples, std::uint32_t frames_lost) noexcept {
+  if (!started_) {
+    started_ = true;
+    origin_ns_ = arrival_ns;
+    expected_ns_ = 0.0;
+    return {arrival_ns, 0, false};
+  }
+  const std::int64_t lost = std::int64_t{frames_lost} * samples;
+  const double arrived_ns = static_cast<double>(arrival_ns - origin_ns_);
+  const double counted_ns = expected_ns_ + static_cast<double>(lost + samples) * sample_ns_;
+  const double late_ns = arrived_ns - counted_ns;
+  if (std::abs(late_ns) > kJump_ns) {
+    const double missing_ns = arrived_ns - expected_ns_ - samples * sample_ns_;
+    origin_ns_ = arrival_ns;
+    expected_ns_ = 0.0;
+    return {arrival_ns, std::max<std::int64_t>(0, std::llround(missing_ns / sample_ns_)), true};
+  }
+  expected_ns_ = late_ns < 0.0 ? arrived_ns : counted_ns + kFollowLate * late_ns;
+  return {origin_ns_ + std::llround(expected_ns_), lost, false};
+}
+
+}  // namespace stillcut

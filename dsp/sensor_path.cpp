@@ -1,0 +1,101 @@
+#include "dsp/sensor_path.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace stillcut {
+namespace {
+
+constexpr double kMeanMemory_s = 0.03;  // gravity, drift and slow feed force leave the level through this
+constexpr double kLevelMemory_s = 0.03;  // at least; three revolutions where those are longer
+constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle worth following
+
+}  // namespace
+
+SensorPath::SensorPath(const SensorSettings& sensor, const LineWatchSettings& watch)
+    : rate_{sensor.sample_rate_hz},
+      axes_{std::popcount(static_cast<unsigned>(sensor.axes_present & 7U))},
+      filter_{axes_},
+      watch_{axes_, sensor.sample_rate_hz, watch} {
+  int n = 0;
+  for (int a = 0; a < kMaxAxes; ++a) {
+    if ((sensor.axes_present >> a & 1U) != 0) axis_[n++] = a;
+  }
+}
+
+double SensorPath::turn(double speed, double seconds) noexcept {
+  revolutions_ += speed * seconds / (2.0 * std::numbers::pi);
+  revolutions_ -= std::floor(revolutions_);
+  return revolutions_;
+}
+
+void SensorPath::skip(std::int64_t samples, double speed) noexcept {
+  turn(speed, static_cast<double>(samples) / rate_);
+  check_.forget_runs();
+  if (samples > watch_.window_length() / 4) {
+    watch_.clear_window();
+    doubted_[std::countr_zero(static_cast<unsigned>(kGap))] = watch_.window_length();
+    return;
+  }
+  const std::array<float, kMaxAxes> silence{};
+  for (std::int64_t i = 0; i < samples; ++i) watch_.push({silence.data(), static_cast<std::size_t>(axes_)});
+}
+
+int SensorPath::process(const SampleBlock& block, int from, double speed) noexcept {
+  const bool turning = speed > kSlowestTurning;
+  const double revolution_s = turning ? 2.0 * std::numbers::pi / speed : 0.0;
+  if (turning) {
+    filter_.set_samples_per_revolution(rate_ * revolution_s);
+  }
+  const auto mean_gain = static_cast<float>(1.0 / (kMeanMemory_s * rate_));
+  const auto level_gain = static_cast<float>(1.0 / (std::max(kLevelMemory_s, 3.0 * revolution_s) * rate_));
+  const double step_s = 1.0 / rate_;
+  hop_complete_ = false;
+  int i = from;
+  while (i < block.samples && !hop_complete_) {
+    const std::uint32_t raised = check_.check(block, i);
+    for (int d = 0; d < kDoubtCount; ++d) {
+      doubted_[d] = (raised >> d & 1U) != 0 ? watch_.window_length() : std::max(0, doubted_[d] - 1);
+    }
+    std::array<float, kMaxAxes> x{}, residual{};
+    for (int a = 0; a < axes_; ++a) x[a] = block.acceleration[axis_[a]][i];
+    const double angle = turn(speed, step_s);
+    if (turning) {
+      filter_.process(angle, {x.data(), static_cast<std::size_t>(axes_)}, residual);
+    } else {
+      for (int a = 0; a < axes_; ++a) residual[a] = std::isfinite(x[a]) ? x[a] - mean_[a] : 0.0F;
+    }
+    for (int a = 0; a < axes_; ++a) {
+      if (!std::isfinite(x[a])) continue;
+      mean_[a] += mean_gain * (x[a] - mean_[a]);
+      const float alternating = x[a] - mean_[a];
+      power_[a] += level_gain * (alternating * alternating - power_[a]);
+      residual_power_[a] += level_gain * (residual[a] * residual[a] - residual_power_[a]);
+    }
+    hop_complete_ = watch_.push({residual.data(), static_cast<std::size_t>(axes_)});
+    ++i;
+  }
+  return i;
+}
+
+std::uint32_t SensorPath::doubts() const noexcept {
+  std::uint32_t all = kNoDoubt;
+  for (int d = 0; d < kDoubtCount; ++d) all |= doubted_[d] > 0 ? 1U << d : 0U;
+  return all;
+}
+
+double SensorPath::level() const noexcept {
+  double sum = 0.0;
+  for (int a = 0; a < axes_; ++a) sum += power_[a];
+  return std::sqrt(sum);
+}
+
+double SensorPath::residual_level() const noexcept {
+  double sum = 0.0;
+  for (int a = 0; a < axes_; ++a) sum += residual_power_[a];
+  return std::sqrt(sum);
+}
+
+}  // namespace stillcut

@@ -1,0 +1,59 @@
+// One accelerometer's way through the monitor: check the samples, turn the spindle angle, take out what repeats with the
+// spindle, watch the rest for lines. Knows of gaps: missing samples are bridged with silence and counted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "dsp/integrity.hpp"
+#include "dsp/line_watch.hpp"
+#include "dsp/signals.hpp"
+#include "dsp/synchronous_filter.hpp"
+
+namespace stillcut {
+
+struct SensorSettings {
+  double sample_rate_hz = 0.0;
+  std::uint8_t axes_present = 1;  // bit 0 x, 1 y, 2 z
+};
+
+class SensorPath {
+ public:
+  SensorPath(const SensorSettings& sensor, const LineWatchSettings& watch);
+
+  // Missing samples before the block that follows: the angle turns on, the window is bridged or cleared.
+  void skip(std::int64_t samples, double speed) noexcept;
+
+  // Feeds samples from index `from` on until a hop is complete or the block ends; returns the index after the last one
+  // used. `speed` is the spindle speed at the block, rad/s.
+  int process(const SampleBlock& block, int from, double speed) noexcept;
+
+  // True when the last process() ended on a complete hop.
+  [[nodiscard]] bool hop_complete() const noexcept { return hop_complete_; }
+  // Doubts raised by samples that are still in the window.
+  [[nodiscard]] std::uint32_t doubts() const noexcept;
+  // Root mean square of the whole (not residual) signal without its mean, over about three revolutions, m/s^2.
+  [[nodiscard]] double level() const noexcept;
+  [[nodiscard]] double residual_level() const noexcept;
+
+  [[nodiscard]] LineWatch& watch() noexcept { return watch_; }
+  [[nodiscard]] const LineWatch& watch() const noexcept { return watch_; }
+  [[nodiscard]] SynchronousFilter& filter() noexcept { return filter_; }
+  [[nodiscard]] double sample_rate_hz() const noexcept { return rate_; }
+
+ private:
+  double turn(double speed, double seconds) noexcept;
+
+  double rate_;
+  int axes_;
+  std::array<int, kMaxAxes> axis_{};  // columns of the block that this sensor fills
+  SampleCheck check_;
+  double revolutions_ = 0.0;  // spindle angle, 0..1
+  SynchronousFilter filter_;
+  LineWatch watch_;
+  std::array<float, kMaxAxes> mean_{}, power_{}, residual_power_{};
+  std::array<int, kDoubtCount> doubted_{};  // samples until each doubt has left the window
+  bool hop_complete_ = false;
+};
+
+}  // namespace stillcut

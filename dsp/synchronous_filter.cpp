@@ -1,0 +1,58 @@
+#include "dsp/synchronous_filter.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace stillcut {
+
+SynchronousFilter::SynchronousFilter(int axes) : axes_{axes}, table_(static_cast<std::size_t>(kMaxKnots) * axes, 0.0F) {}
+
+bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution) noexcept {
+  samples_per_revolution_ = samples_per_revolution;
+  const auto wanted = static_cast<unsigned>(std::clamp(0.9 * samples_per_revolution, 1.0, double{kMaxKnots}));
+  const int knots = std::max(kMinKnots, static_cast<int>(std::bit_ceil(wanted)));
+  // Hysteresis: near a power of two the number of knots must not flip with every speed message.
+  const bool close_enough = knots_ > 0 && 0.8 * samples_per_revolution <= knots_ && knots_ <= 2.2 * samples_per_revolution;
+  if (close_enough || knots == knots_) return false;
+  knots_ = knots;
+  std::fill(table_.begin(), table_.end(), 0.0F);
+  restart();
+  until_gain_ = 0;
+  return true;
+}
+
+void SynchronousFilter::process(double angle, std::span<const float> x, std::span<float> residual) noexcept {
+  if (knots_ == 0) {
+    for (int a = 0; a < axes_; ++a) residual[a] = std::isfinite(x[a]) ? x[a] : 0.0F;
+    return;
+  }
+  if (--until_gain_ < 0) {
+    // The gain that forgets with the wanted memory; while little is learned the memory is what has been seen so far.
+    const double memory = std::clamp(learned_revolutions_ + 0.5, 1.0, memory_);
+    gain_ = static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
+    until_gain_ = std::max(8, static_cast<int>(samples_per_revolution_ / 4.0));
+    learned_revolutions_ += until_gain_ / samples_per_revolution_;
+  }
+  const double position = angle * knots_;
+  const int k = static_cast<int>(position);
+  const auto f = static_cast<float>(position - k);
+  const float g = 1.0F - f;
+  const std::array<float, 4> b = {g * g * g / 6.0F, (3.0F * f * f * f - 6.0F * f * f + 4.0F) / 6.0F,
+                                  (3.0F * g * g * g - 6.0F * g * g + 4.0F) / 6.0F, f * f * f / 6.0F};
+  const int mask = knots_ - 1;
+  std::array<float*, 4> c{};
+  for (int i = 0; i < 4; ++i) c[i] = table_.data() + static_cast<std::ptrdiff_t>((k + i) & mask) * axes_;
+  for (int a = 0; a < axes_; ++a) {
+    if (!std::isfinite(x[a])) {
+      residual[a] = 0.0F;
+      continue;
+    }
+    const float e = x[a] - (b[0] * c[0][a] + b[1] * c[1][a] + b[2] * c[2][a] + b[3] * c[3][a]);
+    const float step = gain_ * e;
+    for (int i = 0; i < 4; ++i) c[i][a] += step * b[i];
+    residual[a] = e;
+  }
+}
+
+}  // namespace stillcut

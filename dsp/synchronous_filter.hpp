@@ -1,0 +1,50 @@
+// Takes out of a signal everything that repeats with the spindle: tooth passing, runout, every spindle order at once.
+//
+// The repeating part is kept as a periodic cubic B-spline over one revolution, y(theta) = sum_k c_k b(theta B - k), and
+// learned sample by sample: e = x - y(theta), c_k += g e b_k. It costs eight multiplications a sample whatever the number of
+// orders, and follows speed ramps because it lives in angle, not in time. A memory of M revolutions makes a notch of about
+// f_spindle / (2 pi M) on either side of each order; chatter between the orders passes untouched. Orders up to about a
+// third of the samples a revolution are removed. docs/detection.md has the measured response.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dsp/signals.hpp"
+
+namespace stillcut {
+
+class SynchronousFilter {
+ public:
+  // Room for up to kMaxKnots knots a revolution on each of `axes` axes; nothing is allocated later.
+  explicit SynchronousFilter(int axes);
+
+  // Prepares for a rate of samples a revolution; forgets what was learned when the number of knots has to change.
+  // Returns true when it did. samples_per_revolution must be > 0.
+  bool set_samples_per_revolution(double samples_per_revolution) noexcept;
+
+  // Memory in revolutions that learning settles to; right after restart() it learns as fast as the data allow.
+  void set_memory(double revolutions) noexcept { memory_ = revolutions; }
+  void restart() noexcept { learned_revolutions_ = 0.0; }
+
+  // One sample of every axis at a spindle angle (revolutions, 0 <= angle < 1). residual[a] = x[a] - synchronous part.
+  // A sample that is not finite leaves the table as it is and gives a residual of 0.
+  void process(double angle, std::span<const float> x, std::span<float> residual) noexcept;
+
+  [[nodiscard]] double learned_revolutions() const noexcept { return learned_revolutions_; }
+
+ private:
+  static constexpr int kMinKnots = 32, kMaxKnots = 1024;
+
+  int axes_;
+  int knots_ = 0;
+  double samples_per_revolution_ = 0.0;
+  double memory_ = 16.0;
+  double learned_revolutions_ = 0.0;
+  float gain_ = 0.0F;
+  int until_gain_ = 0;  // samples until the gain is worked out again
+  std::vector<float> table_;  // [knot][axis]
+};
+
+}  // namespace stillcut

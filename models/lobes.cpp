@@ -1,0 +1,105 @@
+#include "models/lobes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "models/floquet.hpp"
+#include "models/linear_cut.hpp"
+#include "models/receptance.hpp"
+#include "models/zeroth_order.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// The modes that move most, in rising frequency, as far as the diagram has room.
+void summarise(std::span<const Mode> modes, LobeDiagram& diagram) {
+  std::vector<Mode> chosen(modes.begin(), modes.end());
+  const auto peak_compliance = [](const Mode& mode) { return 1.0 / (2.0 * mode.damping_ratio * mode.stiffness); };
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [&](const Mode& a, const Mode& b) { return peak_compliance(a) > peak_compliance(b); });
+  chosen.resize(std::min<std::size_t>(chosen.size(), LobeDiagram::kMaxModes));
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+  diagram.mode_count = static_cast<int>(chosen.size());
+  std::transform(chosen.begin(), chosen.end(), diagram.modes.begin(), [](const Mode& mode) {
+    return ModeSummary{mode.natural_frequency / kTwoPi, mode.damping_ratio};
+  });
+}
+
+}  // namespace
+
+std::vector<double> equally_spaced_speeds(double first, double last, int count) {
+  if (count < 1) throw std::invalid_argument("count of speeds: must be at least 1");
+  if (!(first > 0.0) || !std::isfinite(last) || last < first || (count > 1 && last == first)) {
+    throw std::invalid_argument("speeds: must be positive and rise from the first to the last");
+  }
+  std::vector<double> speeds;
+  for (int i = 0; i < count; ++i) {
+    speeds.push_back(i + 1 == count && count > 1 ? last : first + (last - first) * i / std::max(1, count - 1));
+  }
+  return speeds;
+}
+
+std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material, const Cut& cut,
+                                     std::span<const Mode> modes, std::span<const double> speeds,
+                                     const LobeSettings& settings, const std::function<void(double)>& progress) {
+  check_modes(modes);
+  const LinearCut linear = linear_cut(tool, material, cut);
+  const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
+  if (settings.method == LobeMethod::zeroth_order) {
+    return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
+  }
+  std::vector<DepthLimit> limits;
+  for (const double speed : speeds) {
+    limits.push_back(floquet_depth_limit(linear, turned, speed, {.max_depth = settings.max_depth}));
+    if (progress) progress(static_cast<double>(limits.size()) / static_cast<double>(speeds.size()));
+  }
+  return limits;
+}
+
+LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
+                                 const SpindleLimits& spindle, std::span<const Mode> modes,
+                                 const LobeSettings& settings) {
+  if (settings.points < 2 || settings.points > LobeDiagram::kMaxPoints) {
+    throw std::invalid_argument("lobe diagram: needs 2 to " + std::to_string(LobeDiagram::kMaxPoints) + " points");
+  }
+  const std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, settings.points);
+  const std::vector<DepthLimit> limits = depth_limits(tool, material, cut, modes, speeds, settings);
+  LobeDiagram diagram;
+  diagram.point_count = settings.points;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    diagram.points[i] = {speeds[i], limits[i].depth, limits[i].chatter_frequency / kTwoPi};
+  }
+  summarise(modes, diagram);
+  diagram.valid = true;
+  return diagram;
+}
+
+double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept {
+  if (!diagram.valid || diagram.point_count < 2) return kNaN;
+  const auto last = static_cast<std::size_t>(diagram.point_count) - 1;
+  const double first_speed = diagram.points[0].speed, last_speed = diagram.points[last].speed;
+  const double rounding = 1e-9 * last_speed;  // a speed at the spindle's limit may differ in its last bits
+  if (!(speed >= first_speed - rounding && speed <= last_speed + rounding)) return kNaN;
+  const double place =
+      std::clamp((speed - first_speed) / (last_speed - first_speed), 0.0, 1.0) * static_cast<double>(last);
+  const auto limit = [&](double index) {
+    const double depth = diagram.points[static_cast<std::size_t>(index)].depth_limit;
+    return std::isnan(depth) ? 0.0 : depth;
+  };
+  constexpr double kOnPoint = 1e-6;  // of a spacing: at a point its own limit holds
+  const double nearest = std::round(place);
+  if (std::abs(place - nearest) < kOnPoint) return limit(nearest);
+  return std::min(limit(std::floor(place)), limit(std::ceil(place)));
+}
+
+double margin_at(const LobeDiagram& diagram, double speed, double axial_depth) noexcept {
+  if (!(axial_depth > 0.0)) return kNaN;
+  return depth_limit_at(diagram, speed) / axial_depth - 1.0;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,47 @@
+// Stability lobe diagrams: computed for a posture on ordinary threads, looked up by the real-time thread in constant
+// time.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "models/depth_limit.hpp"
+#include "models/dynamics_map.hpp"
+#include "models/lobe_diagram.hpp"
+#include "models/machining.hpp"
+
+namespace stillcut {
+
+enum class LobeMethod { floquet, zeroth_order };
+
+struct LobeSettings {
+  LobeMethod method = LobeMethod::floquet;
+  double max_depth = 0.02;  // m
+  int points = 201;         // of a LobeDiagram, 2 to LobeDiagram::kMaxPoints
+};
+
+// Speeds from first to last, both included, equally spaced (rad/s). Throws std::invalid_argument for speeds that are
+// not positive and rising or a count below 1; a count of 1 gives `first`.
+std::vector<double> equally_spaced_speeds(double first, double last, int count);
+
+// Depth limits at the given speeds (rad/s) for modes in workpiece axes; the cut's own speed and depth play no part.
+// Throws std::invalid_argument for what cannot be computed. `progress` is told the share done, 0 to 1.
+std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material, const Cut& cut,
+                                     std::span<const Mode> modes, std::span<const double> speeds,
+                                     const LobeSettings& settings, const std::function<void(double)>& progress = {});
+
+// The diagram over the spindle's range, ready for the real-time thread but for its stamps. Of more than kMaxModes modes
+// the summary names the most compliant. Throws as above.
+LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
+                                 const SpindleLimits& spindle, std::span<const Mode> modes,
+                                 const LobeSettings& settings = {});
+
+// Depth limit at a speed (rad/s): the smaller of the two points beside it, 0 where every depth is unstable, +inf where
+// none is, NaN outside the diagram or without one. Constant time, fit for the loop.
+double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept;
+
+// Margin a_lim/a - 1 of a cut of axial depth a (m) at a speed; NaN unknown. Constant time, fit for the loop.
+double margin_at(const LobeDiagram& diagram, double speed, double axial_depth) noexcept;
+
+}  // namespace stillcut

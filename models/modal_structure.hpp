@@ -1,0 +1,54 @@
+// The structure in time: how the tool point moves under a force when its modes are known. Each mode is a damped
+// oscillator along its own direction; the force is taken as a straight line within a step, and for such a force the
+// update is exact, so that step size limits only how well the force is sampled, never the structure's own frequency or
+// damping.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "models/dynamics_map.hpp"
+
+namespace stillcut {
+
+class ModalStructure {
+ public:
+  // `step` in s. Throws std::invalid_argument unless every mode has frequency > 0, stiffness > 0, 0 <= damping < 1 and
+  // a direction of length > 0 (it is normalised).
+  ModalStructure(std::span<const Mode> modes, double step);
+
+  // A hammer blow: impulse in N s, workpiece axes.
+  void strike(const Eigen::Vector3d& impulse);
+
+  // Where the tool point will be after one step under a force (N) that goes from `begin` to `end`; changes nothing.
+  [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) const;
+
+  // Moves on by one step under the force that goes from `begin` to `end`.
+  void advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end);
+
+  // Tool point in workpiece axes: m, m/s, m/s^2 (the acceleration under the `end` force of the last step).
+  [[nodiscard]] Eigen::Vector3d displacement() const;
+  [[nodiscard]] Eigen::Vector3d velocity() const;
+  [[nodiscard]] Eigen::Vector3d acceleration() const;
+
+  // Kinetic plus potential energy of all modes, J.
+  [[nodiscard]] double energy() const;
+
+ private:
+  struct Oscillator {
+    Eigen::Vector3d direction;
+    double frequency, damping_ratio, mass;      // rad/s, -, kg (modal, at the tool point)
+    double free_qq, free_qv, free_vq, free_vv;  // (q, v) after a step without force
+    double q = 0.0, v = 0.0, drive = 0.0;       // m, m/s, force along the direction over modal mass
+  };
+  struct Motion {
+    double q, v;
+  };
+  [[nodiscard]] Motion after_step(const Oscillator& mode, double drive_begin, double drive_end) const;
+
+  double step_;
+  std::vector<Oscillator> modes_;
+};
+
+}  // namespace stillcut

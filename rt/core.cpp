@@ -1,0 +1,165 @@
+#include "rt/core.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "models/lobes.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kStatusEvery_ns = 100'000'000;
+constexpr double kPriorStep = 0.1;  // of margin, worth telling the monitor
+constexpr std::int64_t kControllerSilent_ns = 500'000'000;
+// A diagram computed for a posture older than this is not of the present posture (as long as states arrive).
+constexpr std::int64_t kLobesTooOld_ns = 1'000'000'000;
+
+}  // namespace
+
+Core::Core(const CoreSettings& settings)
+    : settings_{settings}, monitor_{settings.monitor}, compensator_{settings.compensator} {}
+
+bool Core::accept_frame(std::int64_t stamp_ns) noexcept {
+  if (origin_ns_ == 0) {
+    origin_ns_ = now_ns_ = stamp_ns;
+    next_status_ns_ = stamp_ns + kStatusEvery_ns;
+    monitor_.set_origin(stamp_ns);
+  }
+  if (stamp_ns < now_ns_) {
+    ++counters_.frames_out_of_order;
+    if (!out_of_order_told_) {  // one fault a run of such frames
+      char note[96];
+      std::snprintf(note, sizeof note, "stamp goes back by %.6f s; frame dropped",
+                    static_cast<double>(now_ns_ - stamp_ns) * 1e-9);
+      outputs_.put(Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed),
+                         short_text(note)});
+    }
+    out_of_order_told_ = true;
+    return false;
+  }
+  out_of_order_told_ = false;
+  advance(stamp_ns);
+  ++counters_.frames;
+  return true;
+}
+
+void Core::advance(std::int64_t now_ns) noexcept {
+  if (origin_ns_ == 0 || now_ns <= now_ns_) return;
+  now_ns_ = now_ns;
+  adopt_lobes(now_ns);
+  const std::uint32_t doubts = view().doubts;
+  monitor_.advance(now_ns);
+  if (view().doubts != doubts) decide(monitor_.events().empty() ? now_ns : monitor_.events().back().stamp_ns);
+}
+
+void Core::add_speed(const SpindleReading& reading) noexcept { monitor_.add_speed(reading); }
+
+void Core::add_samples(const SampleBlock& block) noexcept {
+  counters_.frames_lost += block.frames_lost;
+  monitor_.add_samples(block);
+  decide(now_ns_);
+}
+
+// Bus-off and error-passive lose frames: told once, until the bus says that it was restarted or frames flow again.
+void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
+  constexpr std::uint32_t kControllerTrouble = 0x04, kBusOff = 0x40, kRestarted = 0x100;  // CAN_ERR_*
+  constexpr std::uint8_t kPassive = 0x30;                                               // receive or transmit
+  if ((id & kRestarted) != 0) bus_errors_told_ = 0;
+  const bool passive = (id & kControllerTrouble) != 0 && (controller & kPassive) != 0;
+  const char* what = (id & kBusOff) != 0 ? "CAN bus-off: no frames until the controller is restarted"
+                     : passive           ? "CAN controller error-passive: check wiring, termination and bit rates"
+                                         : nullptr;
+  const std::uint32_t kind = (id & kBusOff) != 0 ? kBusOff : kControllerTrouble;
+  if (what == nullptr || (bus_errors_told_ & kind) != 0) return;
+  bus_errors_told_ |= kind;
+  outputs_.put(Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed),
+                     short_text(what)});
+}
+
+void Core::add_robot_state(const RobotState& state) noexcept {
+  robot_ = state;
+  robot_heard_ = true;
+}
+
+void Core::add_lobes(const LobeDiagram& diagram) noexcept {
+  next_lobes_ = diagram;
+  adopt_lobes(now_ns_);
+}
+
+void Core::adopt_lobes(std::int64_t now_ns) noexcept {
+  if (!next_lobes_.valid || next_lobes_.usable_from_ns > now_ns) return;
+  lobes_ = next_lobes_;
+  next_lobes_.valid = false;
+  update_prior();
+}
+
+// What the monitor should expect: the modes of the posture, and the margin at the present speed and depth.
+void Core::update_prior() noexcept {
+  prior_margin_ = predicted_margin();
+  const LobeDiagram* diagram = lobes();
+  std::array<ExpectedMode, LobeDiagram::kMaxModes> modes{};
+  const auto count = static_cast<std::size_t>(diagram == nullptr ? 0 : std::clamp(diagram->mode_count, 0, LobeDiagram::kMaxModes));
+  for (std::size_t m = 0; m < count; ++m) modes[m] = {diagram->modes[m].frequency_hz, diagram->modes[m].damping_ratio};
+  monitor_.expect({modes.data(), count}, prior_margin_);
+}
+
+const LobeDiagram* Core::lobes() const noexcept {
+  if (!lobes_.valid) return nullptr;
+  const bool of_another_posture = robot_heard_ && robot_.stamp_ns - lobes_.posture_stamp_ns > kLobesTooOld_ns;
+  return of_another_posture ? nullptr : &lobes_;
+}
+
+double Core::axial_depth() const noexcept {
+  return robot_heard_ && std::isfinite(robot_.axial_depth) ? robot_.axial_depth : settings_.axial_depth;
+}
+
+double Core::predicted_margin() const noexcept {
+  const LobeDiagram* diagram = lobes();
+  return diagram == nullptr ? kNaN : margin_at(*diagram, view().speed, axial_depth());
+}
+
+void Core::decide(std::int64_t now_ns) noexcept {
+  collect_events();
+  CompensatorInputs in;
+  in.now_ns = now_ns;
+  in.monitor = &view();
+  in.lobes = lobes();
+  in.axial_depth = axial_depth();
+  in.feed_direction = robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
+  in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
+  in.controller_alive = robot_heard_ && now_ns - robot_.stamp_ns < kControllerSilent_ns;
+  compensator_.step(in, outputs_);
+  if (now_ns >= next_status_ns_) {
+    put_status(now_ns);
+    const double margin = predicted_margin();
+    const bool moved = std::isnan(margin) != std::isnan(prior_margin_) || std::abs(margin - prior_margin_) > kPriorStep;
+    if (moved) update_prior();
+    next_status_ns_ += kStatusEvery_ns * ((now_ns - next_status_ns_) / kStatusEvery_ns + 1);
+  }
+}
+
+void Core::collect_events() noexcept {
+  for (const Event& event : monitor_.events()) outputs_.put(event);
+  monitor_.clear_events();
+}
+
+void Core::put_status(std::int64_t now_ns) noexcept {
+  const MonitorView& heard = view();
+  Status s;
+  s.stamp_ns = now_ns;
+  s.state = heard.state;
+  s.mode = settings_.compensator.mode;
+  s.spindle_speed_rpm = rad_s_to_rpm(heard.speed);
+  s.indicator = heard.indicator;
+  s.margin = predicted_margin();
+  s.chatter_frequency_hz = heard.chatter_frequency_hz;
+  s.frames = counters_.frames;
+  s.frames_lost = counters_.frames_lost;
+  s.lobes_stamp_ns = lobes_.posture_stamp_ns;
+  outputs_.put(s);
+}
+
+}  // namespace stillcut

@@ -1,0 +1,83 @@
+// The core: monitor, prediction and compensator put together, as a function of what arrives. The live loop and playback
+// both drive exactly this, frame by frame in the order of their stamps, so a recording gives the live run's decisions again
+// bit for bit. It holds no clock, no socket, no thread; after construction it allocates, locks and throws nothing.
+//
+// Order of calls for each CAN frame: accept_frame(stamp); if it says true, add_samples / add_speed for what the frame held;
+// then read outputs() and clear_outputs(). Robot messages go in when their stamp's turn has come. In silence the live
+// loop calls advance(now) instead, with a `now` that no later frame can undercut.
+#pragma once
+
+#include <cstdint>
+
+#include "dsp/monitor.hpp"
+#include "models/lobe_diagram.hpp"
+#include "rt/compensator.hpp"
+#include "rt/output_queue.hpp"
+#include "rt/signals.hpp"
+
+namespace stillcut {
+
+struct CoreSettings {
+  MonitorSettings monitor;
+  CompensatorSettings compensator;
+  double axial_depth = 0.0;    // m, nominal; a robot state overrides it
+  double feed_direction = 0.0; // rad, nominal
+  double nominal_speed = 0.0;  // rad/s, nominal
+};
+
+struct CoreCounters {
+  std::int64_t frames = 0;            // accepted
+  std::int64_t frames_lost = 0;       // told by counters
+  std::int64_t frames_out_of_order = 0;
+};
+
+class Core {
+ public:
+  explicit Core(const CoreSettings& settings);
+
+  // A frame's stamp comes first. False: it went back in time; the frame is to be dropped (a fault event says so).
+  bool accept_frame(std::int64_t stamp_ns) noexcept;
+  void add_samples(const SampleBlock& block) noexcept;
+  void add_speed(const SpindleReading& reading) noexcept;
+  void add_robot_state(const RobotState& state) noexcept;
+  void add_ack(const CorrectionAck& ack) noexcept { compensator_.acknowledge(ack); }
+  // The controller's own report of trouble on the bus: an error frame's identifier and second data byte (linux/can/error.h).
+  void add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept;
+  // Comes into use when data time reaches its usable_from_ns.
+  void add_lobes(const LobeDiagram& diagram) noexcept;
+  // Data time has come this far without a frame.
+  void advance(std::int64_t now_ns) noexcept;
+
+  [[nodiscard]] std::span<const Output> outputs() const noexcept { return outputs_.items(); }
+  void clear_outputs() noexcept { outputs_.clear(); }
+
+  [[nodiscard]] const MonitorView& view() const noexcept { return monitor_.view(); }
+  [[nodiscard]] const CoreCounters& counters() const noexcept { return counters_; }
+  [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
+  // The diagram in use; nullptr when there is none that fits the posture.
+  [[nodiscard]] const LobeDiagram* lobes() const noexcept;
+
+ private:
+  void decide(std::int64_t now_ns) noexcept;
+  void collect_events() noexcept;
+  void adopt_lobes(std::int64_t now_ns) noexcept;
+  void put_status(std::int64_t now_ns) noexcept;
+  void update_prior() noexcept;
+  [[nodiscard]] double axial_depth() const noexcept;
+  [[nodiscard]] double predicted_margin() const noexcept;
+
+  CoreSettings settings_;
+  Monitor monitor_;
+  Compensator compensator_;
+  OutputQueue outputs_;
+  CoreCounters counters_;
+  LobeDiagram lobes_, next_lobes_;
+  double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown
+  RobotState robot_;
+  bool robot_heard_ = false;
+  bool out_of_order_told_ = false;
+  std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well
+  std::int64_t origin_ns_ = 0, now_ns_ = 0, next_status_ns_ = 0;
+};
+
+}  // namespace stillcut

@@ -1,0 +1,80 @@
+#include "rt/speed_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "models/lobes.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFrequencyError = 0.01;  // of f_c and of the spindle's speed: the pocket must be that wide
+constexpr double kAlreadyThere = 0.005;   // a target this near is no move
+constexpr double kSameTarget = 0.01;      // of one already tried
+
+double predicted_margin(const SpeedQuestion& q, double speed) noexcept {
+  return q.lobes == nullptr ? kNaN : margin_at(*q.lobes, speed, q.axial_depth);
+}
+
+// The worst margin within the error of the target.
+double safe_margin(const SpeedQuestion& q, double speed) noexcept {
+  const double low = std::max(q.limits.min_speed, speed * (1.0 - kFrequencyError));
+  const double high = std::min(q.limits.max_speed, speed * (1.0 + kFrequencyError));
+  const double middle = predicted_margin(q, speed);
+  const double sides = std::min(predicted_margin(q, low), predicted_margin(q, high));
+  return std::isnan(middle) || std::isnan(sides) ? middle : std::min(middle, sides);
+}
+
+bool was_tried(const SpeedQuestion& q, double speed) noexcept {
+  return std::any_of(q.tried.begin(), q.tried.end(),
+                     [&](double t) { return std::abs(t - speed) < kSameTarget * speed; });
+}
+
+}  // namespace
+
+SpeedChoice choose_speed(const SpeedQuestion& q) noexcept {
+  SpeedChoice best;
+  best.margin_before = predicted_margin(q, q.speed);
+  best.margin_after = kNaN;
+  if (!(q.chatter_frequency_hz > 0.0) || q.teeth < 1 || !(q.limits.min_speed > 0.0)) {
+    best.limited_by = kNoStableSettingKnown;
+    return best;
+  }
+  const double in_step = kTwoPi * q.chatter_frequency_hz / q.teeth;  // k = 1
+  const int last = static_cast<int>(std::floor(in_step / q.limits.min_speed));
+  bool out_of_range = false;
+  for (int k = 1; k <= last; ++k) {
+    const double target = in_step / k;
+    if (target > q.limits.max_speed) {
+      out_of_range = true;
+      continue;
+    }
+    const double move = std::abs(target - q.speed);
+    if (move < kAlreadyThere * q.speed || was_tried(q, target)) continue;
+    const double margin = safe_margin(q, target);
+    if (!std::isnan(margin) && !std::isnan(best.margin_before) && margin <= best.margin_before) continue;  // do no harm
+    const bool stable = margin > 0.0;
+    const bool best_stable = best.margin_after > 0.0;
+    const bool better = !best.found || (stable && !best_stable) ||
+                        (stable == best_stable && (stable || std::isnan(margin) ? move < std::abs(best.target - q.speed)
+                                                                                : margin > best.margin_after));
+    if (better) {
+      best.found = true;
+      best.target = target;
+      best.lobe = k;
+      best.margin_after = margin;
+    }
+  }
+  if (!best.found) {
+    best.limited_by = kNoStableSettingKnown | (out_of_range || last < 1 ? kLimitedBySpeedRange : 0);
+    return best;
+  }
+  // Heard and predicted agree: confident. Nothing predicted: the measured frequency alone. A prediction that says the
+  // present cut is stable has just been contradicted.
+  best.confidence_percent = std::isnan(best.margin_after) ? 50 : best.margin_after <= 0.0 ? 30 : best.margin_before < 0.0 ? 80 : 50;
+  return best;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,159 @@
+// Publisher and subscriber on one in-process connection (memq://).
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <lcm/lcm-cpp.hpp>
+#include <mutex>
+
+#include "drivers/files/input_error.hpp"
+#include "drivers/lcm/publisher.hpp"
+#include "drivers/lcm/subscriber.hpp"
+#include "tests/drivers/lcm/random_messages.hpp"
+
+namespace stillcut {
+namespace {
+
+using namespace std::chrono_literals;
+
+// What the subscriber's thread handed over, for the test's thread to wait for.
+class Inbox {
+ public:
+  RobotHandlers handlers() {
+    return {.on_state = [this](const RobotState& state) { add([&] { states.push_back(state); }); },
+            .on_ack = [this](const CorrectionAck& ack) { add([&] { acks.push_back(ack); }); },
+            .on_bad = [this](std::string_view, const char* why_not) { add([&] { bad.emplace_back(why_not); }); }};
+  }
+  // False when fewer have come after ten seconds: a broken link, not a slow machine.
+  bool wait_for(std::size_t messages) {
+    std::unique_lock lock(mutex_);
+    return arrived_.wait_for(lock, 10s, [&] { return states.size() + acks.size() + bad.size() >= messages; });
+  }
+
+  std::vector<RobotState> states;
+  std::vector<CorrectionAck> acks;
+  std::vector<std::string> bad;
+
+ private:
+  template <class Action>
+  void add(Action action) {
+    const std::lock_guard lock(mutex_);
+    action();
+    arrived_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+};
+
+TEST(PublishSubscribe, CarriesRobotMessagesInOrderAndUnchanged) {
+  RandomMessages random(5);
+  const LcmConnection connection = open_lcm("memq://");
+  Inbox inbox;
+  std::int64_t now = 1'000'000'999;
+  Subscriber subscriber(
+      connection, [&] { return now += 1'000'000; }, inbox.handlers());
+  Publisher publisher(connection);
+  std::vector<RobotState> states;
+  std::vector<CorrectionAck> acks;
+  for (int i = 0; i < 100; ++i) {
+    states.push_back(random.state());
+    acks.push_back(random.ack());
+    EXPECT_TRUE(publisher.publish(states.back()));
+    EXPECT_TRUE(publisher.publish(acks.back(), "running"));
+  }
+  ASSERT_TRUE(inbox.wait_for(200));
+  EXPECT_EQ(publisher.sent(), 200);
+  EXPECT_EQ(publisher.failed(), 0);
+  EXPECT_EQ(subscriber.received(), 200);
+  EXPECT_EQ(subscriber.bad(), 0);
+  ASSERT_EQ(inbox.states.size(), 100U);
+  ASSERT_EQ(inbox.acks.size(), 100U);
+  std::int64_t last_stamp_ns = 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    // The stamp is the receiver's, in whole microseconds.
+    EXPECT_EQ(inbox.states[i].stamp_ns % 1000, 0);
+    EXPECT_GT(inbox.states[i].stamp_ns, last_stamp_ns);
+    last_stamp_ns = inbox.states[i].stamp_ns;
+    inbox.states[i].stamp_ns = states[i].stamp_ns;
+    inbox.acks[i].stamp_ns = acks[i].stamp_ns;
+    EXPECT_EQ(encode(inbox.states[i]), encode(states[i]));
+    EXPECT_EQ(encode(inbox.acks[i]), encode(acks[i]));
+  }
+}
+
+TEST(PublishSubscribe, CountsAndReportsWhatCannotBeTrusted) {
+  const LcmConnection connection = open_lcm("memq://");
+  Inbox inbox;
+  Subscriber subscriber(
+      connection, [] { return 0; }, inbox.handlers());
+  Publisher publisher(connection);
+  RobotState bad_state;
+  bad_state.feed_rate = std::numeric_limits<double>::quiet_NaN();
+  publisher.publish(bad_state);
+  const char garbage[] = "not a message";
+  connection->publish(std::string(kRobotAckChannel), garbage, sizeof garbage);
+  connection->publish(std::string(kRobotStateChannel), garbage, 0);
+  publisher.publish(RobotState{});
+  ASSERT_TRUE(inbox.wait_for(4));
+  EXPECT_EQ(subscriber.bad(), 3);
+  EXPECT_EQ(subscriber.received(), 1);
+  EXPECT_EQ(inbox.states.size(), 1U);
+  EXPECT_EQ(inbox.bad.at(0), "feed_rate_m_per_s is not a number from 0 to 100");
+}
+
+// Receives what the daemon publishes, with LCM's own means.
+struct Listener {
+  std::vector<std::pair<std::string, MessageBytes>> messages;
+
+  void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
+    messages.emplace_back(channel, MessageBytes(bytes, bytes + buffer->data_size));
+  }
+};
+
+TEST(PublishSubscribe, SendsEachOutputOnItsChannel) {
+  RandomMessages random(6);
+  const LcmConnection connection = open_lcm("memq://");
+  Listener listener;
+  connection->subscribe("STILLCUT_.*", &Listener::receive, &listener);
+  Publisher publisher(connection);
+  const Event event = random.event();
+  const Correction correction = random.correction();
+  const Status status = random.status();
+  EXPECT_TRUE(publisher.publish(Output(event)));
+  EXPECT_TRUE(publisher.publish(Output(correction)));
+  EXPECT_TRUE(publisher.publish(Output(status)));
+  while (listener.messages.size() < 3) ASSERT_GT(connection->handleTimeout(10000), 0);
+  EXPECT_EQ(publisher.sent(), 3);
+  EXPECT_EQ(listener.messages[0], std::pair(std::string("STILLCUT_EVENT"), encode(event)));
+  EXPECT_EQ(listener.messages[1], std::pair(std::string("STILLCUT_CORRECTION"), encode(correction)));
+  EXPECT_EQ(listener.messages[2], std::pair(std::string("STILLCUT_STATUS"), encode(status)));
+}
+
+TEST(PublishSubscribe, StopsWithoutMessagesAndLeavesTheConnectionUsable) {
+  const LcmConnection connection = open_lcm("memq://");
+  for (int i = 0; i < 3; ++i) {
+    Inbox inbox;
+    const Subscriber subscriber(
+        connection, [] { return 0; }, inbox.handlers());
+    Publisher publisher(connection);
+    EXPECT_TRUE(publisher.publish(RobotState{}));
+    EXPECT_TRUE(inbox.wait_for(1));
+  }
+  Publisher publisher(connection);
+  EXPECT_TRUE(publisher.publish(RobotState{}));  // nobody listens any more: no handler of the past is called
+}
+
+TEST(PublishSubscribe, NamesTheCommandsThatMendAMissingRoute) {
+  std::string message;
+  try {
+    open_lcm("udpm://no-address:0");
+  } catch (const ComponentError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("LCM cannot be reached at udpm://no-address:0"), std::string::npos) << message;
+  EXPECT_NE(message.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace stillcut

@@ -1,0 +1,84 @@
+// Cuts that several stability tests share: those of tests/data/stability, and random ones from a seed.
+#pragma once
+
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "models/linear_cut.hpp"
+#include "models/machining.hpp"
+#include "models/receptance.hpp"
+
+namespace stillcut::test {
+
+inline std::vector<std::vector<std::string>> read_table(const std::string& name) {
+  std::ifstream file(std::string(TEST_DATA "/stability/") + name);
+  std::vector<std::vector<std::string>> rows;
+  std::string line;
+  std::getline(file, line);  // header
+  while (std::getline(file, line)) {
+    std::stringstream fields(line);
+    rows.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+  }
+  return rows;
+}
+
+struct StabilityCase {
+  LinearCut cut;
+  std::vector<Mode> modes;  // feed frame
+};
+
+inline Mode mode_of(double frequency_hz, double damping, double stiffness, double ux, double uy, double uz = 0.0) {
+  return {kTwoPi * frequency_hz, damping, stiffness, {ux, uy, uz}};
+}
+
+inline LinearCut cut_of(int teeth, Milling milling, double immersion_ratio, double ktc, double krc) {
+  Tool tool;
+  tool.teeth = teeth;
+  tool.diameter = 0.025;
+  Material material;
+  material.ktc = ktc;
+  material.krc = krc;
+  Cut cut;
+  cut.milling = milling;
+  cut.radial_depth = immersion_ratio * tool.diameter;
+  return linear_cut(tool, material, cut);
+}
+
+inline std::vector<Mode> robot_modes() {
+  return {mode_of(55, 0.04, 3e6, 1, 0), mode_of(500, 0.03, 2e7, 1, 0), mode_of(125, 0.035, 6e6, 0, 1),
+          mode_of(520, 0.03, 1.8e7, 0, 1)};
+}
+
+// "a", "b" or "c_feedN" of spectral_radius.csv.
+inline StabilityCase reference_case(const std::string& name, double immersion_ratio, Milling milling) {
+  if (name.starts_with("c_feed")) {
+    return {cut_of(2, milling, immersion_ratio, 8e8, 3e8),
+            modes_in_feed_frame(robot_modes(), deg_to_rad(std::stod(name.substr(6))))};
+  }
+  const double frequency = kTwoPi * 922.0, stiffness = 0.03993 * frequency * frequency;
+  std::vector<Mode> modes{mode_of(922, 0.011, stiffness, 1, 0)};
+  if (name == "b") modes.push_back(mode_of(922, 0.011, stiffness, 0, 1));
+  return {cut_of(2, milling, immersion_ratio, 6e8, 2e8), modes};
+}
+
+// One to four teeth, any immersion and direction, one to three modes between 40 and 900 Hz.
+inline StabilityCase random_case(std::mt19937_64& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  StabilityCase result;
+  const auto milling = static_cast<Milling>(std::uniform_int_distribution<int>(1, 3)(random));
+  result.cut = cut_of(std::uniform_int_distribution<int>(1, 4)(random), milling, uniform(0.05, 1.0),
+                      uniform(5e8, 1.5e9), uniform(1e8, 5e8));
+  const int count = std::uniform_int_distribution<int>(1, 3)(random);
+  for (int i = 0; i < count; ++i) {
+    const double angle = uniform(0.0, kTwoPi);
+    result.modes.push_back(mode_of(uniform(40, 900), uniform(0.01, 0.06), uniform(2e6, 3e7), std::cos(angle),
+                                   std::sin(angle), uniform(-0.3, 0.3)));
+  }
+  return result;
+}
+
+}  // namespace stillcut::test

@@ -1,0 +1,126 @@
+"""What the system tests share: a folder that the guest kernel can use, runs in it, and readers of what came out.
+
+A scenario copies the built programs and a cell into a fresh folder, runs one bash script inside User-mode Linux
+(uml/run-in-uml; helpers of that script are in guest.sh), and then checks on the host what the daemon and its independent
+listeners left there.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# The simulated cut: air, entry, a sound cut, so deep that it chatters, exit (s:mm).
+DEPTH = "0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,5.3:3.6,5.4:0"
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+class Failed(Exception):
+    """A scenario did not show what it must."""
+
+
+def require(condition, what):
+    if not condition:
+        raise Failed(what)
+
+
+def parse_arguments(description):
+    options = argparse.ArgumentParser(description=description)
+    options.add_argument("scenario")
+    options.add_argument("--programs", type=pathlib.Path, required=True, help="folder of stillcut and stillcutd")
+    options.add_argument("--cell", type=pathlib.Path, required=True, help="cell file whose folder is copied")
+    options.add_argument("--log", type=pathlib.Path, help="candump log to play; default: a simulated cut")
+    return options.parse_args()
+
+
+class Folder:
+    """A scratch folder with the programs, the guest's helpers, and a cell that listens to vcan0 as live.toml."""
+
+    def __init__(self, options):
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system."))
+        for file in (options.programs / "stillcut", options.programs / "stillcutd", HERE / "guest.sh"):
+            shutil.copy(file, self.path)
+        cell = self.path / "cell"
+        shutil.copytree(options.cell.parent, cell)
+        text = (cell / options.cell.name).read_text()
+        (cell / "live.toml").write_text(re.sub(r'(?m)^bus = .*$', 'bus = "socketcan:vcan0"', text))
+        if options.log:
+            shutil.copy(options.log, self.path / "cut.log")
+        else:
+            self.stillcut("simulate", "cell/" + options.cell.name, "--duration", "6", "--depth", DEPTH, "--can", "cut.log")
+        subprocess.run(["chmod", "-R", "a+rwX", self.path], check=True)  # the guest's kernel may run as nobody
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is Failed:
+            for name in ("daemon.err", "daemon.out", "live.csv"):
+                if (self.path / name).exists():
+                    lines = (self.path / name).read_text(errors="replace").splitlines()
+                    print(f"--- end of {name}", *lines[-15:], sep="\n")
+        shutil.rmtree(self.path)
+
+    def run(self, *command):
+        result = subprocess.run([str(word) for word in command], cwd=self.path, capture_output=True, text=True)
+        return result.returncode, result.stdout, result.stderr
+
+    def stillcut(self, *words):
+        status, out, err = self.run("./stillcut", *words)
+        require(status == 0, f"stillcut {' '.join(words)} ended with {status}: {err}")
+        return out
+
+    def in_guest(self, script, seconds=90):
+        status, out, err = self.run(HERE / "uml/run-in-uml", "-t", seconds, "--", "bash", "-c", ". ./guest.sh\n" + script)
+        print(out, err, sep="", end="")
+        require(status == 0, f"the run in the guest ended with {status}")
+
+    def replay(self, log):
+        """Plays a log through `stillcut replay`; returns its summary and the text of the events file it wrote."""
+        events = log.replace(".log", ".replay.csv")
+        summary = json.loads(self.stillcut("replay", "cell/live.toml", "--can", log, "--events", events, "--json"))
+        return summary, self.text(events)
+
+    def daemon_summary(self):
+        """The JSON object that stillcutd prints at its end."""
+        return json.loads(self.text("daemon.out"))
+
+    def text(self, name):
+        require((self.path / name).exists(), f"{name} was not written")
+        return (self.path / name).read_text()
+
+
+def events_of(text):
+    return list(csv.DictReader(text.splitlines()))
+
+
+def same_decisions(folder):
+    """What the daemon decided live equals the playback of what it recorded, byte for byte; returns the events.
+
+    The live run also knows of the silence after the last frame, of which a recording can tell nothing: only faults.
+    """
+    live = folder.text("live.csv")
+    _, replayed = folder.replay("record.log")
+    require(live.startswith(replayed), f"live and playback of the recording differ:\n{live}\n{replayed}")
+    after = [e for e in events_of(live)[len(events_of(replayed)):] if e["event"] != "fault"]
+    require(not after, f"decided after the last frame: {after}")
+    return events_of(live)
+
+
+def number(text):
+    return float(text) if text else float("nan")
+
+
+def main(scenarios, description):
+    """Runs the scenario named on the command line; exit status 1 and one line where it fails."""
+    options = parse_arguments(description)
+    try:
+        with Folder(options) as folder:
+            scenarios[options.scenario](folder)
+    except Failed as failure:
+        sys.exit(f"FAILED {options.scenario}: {failure}")
+    print(f"ok {options.scenario}")

@@ -1,0 +1,155 @@
+// `stillcut replay`: plays a CAN log through the daemon's own code, as fast as it goes, and writes down what was decided.
+#include <chrono>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "drivers/can/candump_log.hpp"
+#include "drivers/files/cell.hpp"
+#include "drivers/lcm/connection.hpp"
+#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/publisher.hpp"
+#include "tools/commands.hpp"
+#include "tools/event_csv.hpp"
+#include "tools/event_tally.hpp"
+#include "tools/pipeline.hpp"
+#include "tools/plot_replay.hpp"
+#include "tools/predictor.hpp"
+#include "tools/progress.hpp"
+#include "tools/replay_trace.hpp"
+
+namespace stillcut {
+namespace {
+
+struct ReplayOptions {
+  std::string cell, can, lcm, events, plot, publish;
+  double lcm_offset_s = 0.0;
+  bool json = false;
+};
+
+// The robot's messages of an LCM log, in step with the frames.
+class RobotMessages {
+ public:
+  RobotMessages(const std::string& file, double offset_s, Predictor& predictor) : predictor_{predictor} {
+    if (file.empty()) return;
+    LcmLogReader reader{file};
+    while (auto message = reader.next()) {
+      std::visit([&](auto& m) { m.stamp_ns += static_cast<std::int64_t>(offset_s * 1e9); }, *message);
+      waiting_.push_back(*message);
+    }
+    bad_ = reader.bad();
+  }
+
+  // Hands over all whose time has come, each with the lobes of its posture.
+  void feed_until(std::int64_t stamp_ns, Core& core) {
+    while (!waiting_.empty() && std::visit([](const auto& m) { return m.stamp_ns; }, waiting_.front()) <= stamp_ns) {
+      if (const auto* state = std::get_if<RobotState>(&waiting_.front())) {
+        core.add_robot_state(*state);
+        if (const auto diagram = predictor_.at(*state)) core.add_lobes(*diagram);
+      } else {
+        core.add_ack(std::get<CorrectionAck>(waiting_.front()));
+      }
+      waiting_.pop_front();
+    }
+  }
+  [[nodiscard]] std::int64_t bad() const { return bad_; }
+
+ private:
+  Predictor& predictor_;
+  std::deque<RobotMessage> waiting_;
+  std::int64_t bad_ = 0;
+};
+
+std::ofstream open_for_writing(const std::string& file) {
+  std::ofstream out{file, std::ios::binary};
+  if (!out) throw InputError(file, 0, "cannot be written; check the folder and its rights");
+  return out;
+}
+
+void replay(const ReplayOptions& options) {
+  const Cell cell = read_cell(options.cell, {.bus = false});
+  Pipeline pipeline{cell};
+  Core& core = pipeline.core();
+  Predictor predictor{cell};
+  core.add_lobes(predictor.nominal());
+  CandumpReader log{options.can};
+  RobotMessages robot{options.lcm, options.lcm_offset_s, predictor};
+  std::optional<Publisher> publisher;
+  if (!options.publish.empty()) publisher.emplace(open_lcm(options.publish));
+
+  std::ofstream events_file;
+  const bool events_to_stdout = options.events == "-";
+  if (!options.events.empty() && !events_to_stdout) events_file = open_for_writing(options.events);
+  std::ostream& events = events_to_stdout ? std::cout : events_file;
+  if (!options.events.empty()) write_event_header(events);
+  const bool tell = !options.json && !events_to_stdout;
+
+  std::optional<TraceCollector> trace;
+  if (!options.plot.empty()) trace.emplace(cell);
+  EventTally tally;
+  Progress progress{"replaying"};
+  const double size = static_cast<double>(std::max<std::uintmax_t>(1, std::filesystem::file_size(options.can)));
+  constexpr double kBytesAFrame = 150.0;  // about; for the bar only
+  std::int64_t last_ns = 0;
+  const auto started = std::chrono::steady_clock::now();
+  CanFrame frame;
+  while (log.next(frame)) {
+    if (frame.stamp_ns >= last_ns) robot.feed_until(last_ns = frame.stamp_ns, core);
+    const bool heard = pipeline.feed(frame);
+    if (trace && heard) trace->add(pipeline);
+    for (const Output& output : core.outputs()) {
+      if (publisher) publisher->publish(output);
+      if (output.type != Output::Type::event) continue;
+      tally.count(output.event);
+      if (!options.events.empty()) write_event(events, output.event, core.origin_ns());
+      if (tell) std::cout << event_line(output.event, core.origin_ns()) << std::endl;
+      if (trace) trace->add(output.event, core.origin_ns());
+    }
+    core.clear_outputs();
+    if ((log.frames() & 0x3FF) == 0) progress.update(static_cast<double>(log.frames()) * kBytesAFrame / size);
+  }
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double signal_s = static_cast<double>(last_ns - core.origin_ns()) * 1e-9;
+
+  if (const std::string warning = log.warning(); !warning.empty()) std::cerr << "stillcut: " << warning << '\n';
+  if (robot.bad() > 0) std::cerr << "stillcut: " << options.lcm << ": " << robot.bad() << " bad messages passed over\n";
+  if (trace) plot_replay(trace->finish(), options.plot);
+  const std::int64_t bad = log.frames_bad() + pipeline.decoder().counters().frames_bad;
+  if (options.json) {
+    const nlohmann::ordered_json summary = {{"signal_s", signal_s},
+                                            {"wall_s", wall_s},
+                                            {"frames", log.frames()},
+                                            {"frames_lost", core.counters().frames_lost},
+                                            {"frames_bad", bad},
+                                            {"frames_out_of_order", core.counters().frames_out_of_order},
+                                            {"chatter_onsets", tally.chatter_onsets},
+                                            {"corrections", tally.corrections},
+                                            {"faults", tally.faults}};
+    std::cout << summary.dump() << '\n';
+  } else if (tell) {
+    std::cout << signal_s << " s of signal in " << wall_s << " s (" << std::llround(signal_s / wall_s) << " x real time), "
+              << log.frames() << " frames, " << core.counters().frames_lost << " lost, " << bad << " bad; "
+              << tally.chatter_onsets << " chatter onsets, " << tally.corrections << " corrections\n";
+  }
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("replay", "Play a CAN log through the daemon's own code and list what it decides");
+  auto options = std::make_shared<ReplayOptions>();
+  command->add_option("CELL", options->cell, "cell file")->required();
+  command->add_option("--can", options->can, "CAN log as 'candump -L' writes it")->required();
+  command->add_option("--lcm", options->lcm, "LCM log as lcm-logger writes it: robot states and acknowledgements");
+  command->add_option("--lcm-offset", options->lcm_offset_s, "seconds to add to the LCM log's times")->capture_default_str();
+  command->add_option("--events", options->events, "write the events as CSV ('-': standard output)");
+  command->add_option("--plot", options->plot, "draw vibration, spectrogram, indicator and speed (.svg or .png)");
+  command->add_option("--publish", options->publish, "publish on LCM as the daemon would, e.g. memq:// or udpm://...");
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->footer("Example:\n  stillcut replay cell.toml --can cut.log --events events.csv --plot cut.png");
+  command->callback([options] { replay(*options); });
+}
+
+}  // namespace stillcut

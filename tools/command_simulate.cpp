@@ -1,0 +1,256 @@
+// stillcut simulate: mills in simulated time, and writes what the tool did and what the cell's sensors would have sent.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "drivers/can/candump_log.hpp"
+#include "drivers/files/cell.hpp"
+#include "drivers/files/csv.hpp"
+#include "drivers/files/dynamics_map_file.hpp"
+#include "models/interpolation.hpp"
+#include "models/milling_simulation.hpp"
+#include "tools/can_encoder.hpp"
+#include "tools/commands.hpp"
+#include "tools/plot_simulation.hpp"
+#include "tools/progress.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr std::int64_t kLogOrigin =
+    1'700'000'000'000'000'000;        // ns: logs carry dates; a fixed one keeps them repeatable
+constexpr double kRateGrain = 100.0;  // Hz: rates of rows are whole hundreds
+
+struct SimulateOptions {
+  std::string cell, posture, depth, speed, csv, can, plot;
+  double duration_s = 0.0, rate_hz = 0.0, noise_m_per_s2 = 0.2, force_noise = 0.02;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+// "0:0,0.5:2.5" to a schedule, each value times `unit`.
+Schedule parse_schedule(const std::string& option, const std::string& text, double unit) {
+  Schedule schedule;
+  const auto number = [&](const std::string& part) {
+    std::size_t used = 0;
+    double value = 0.0;
+    try {
+      value = std::stod(part, &used);
+    } catch (const std::exception&) {
+      used = std::string::npos;
+    }
+    if (used != part.size() || !std::isfinite(value) || value < 0.0)
+      throw CLI::ValidationError(option, "'" + text + "' is not a list TIME:VALUE,TIME:VALUE of numbers from 0 up");
+    return value;
+  };
+  for (const std::string& pair : CLI::detail::split(text, ',')) {
+    const std::size_t colon = std::min(pair.find(':'), pair.size());
+    const double time = number(pair.substr(0, colon));
+    const double value = number(colon < pair.size() ? pair.substr(colon + 1) : "");
+    if (!schedule.empty() && time < schedule.back().time) throw CLI::ValidationError(option, "times must not go back");
+    schedule.push_back({time, value * unit});
+  }
+  return schedule;
+}
+
+std::vector<Mode> modes_at_posture(const Cell& cell, const std::string& asked) {
+  const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
+  const DynamicsMap map = read_dynamics_map(dynamics.map);
+  try {
+    if (asked.empty() && dynamics.posture.empty() && map.postures.size() == 1) return map.postures.front().modes;
+    const Posture posture = find_posture(map, asked.empty() ? dynamics.posture : asked);
+    return predict_posture(map, posture, {.modal = dynamics.modal, .power = dynamics.power}).posture.modes;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell.file.string(), 0, std::string("dynamics.posture: ") + error.what());
+  }
+}
+
+MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
+  MillingSetup setup;
+  setup.tool = require(cell, cell.tool, "tool");
+  setup.material = require(cell, cell.material, "material");
+  setup.cut = require(cell, cell.cut, "cut");
+  setup.modes = modes_at_posture(cell, options.posture);
+  if (!options.depth.empty()) setup.axial_depth = parse_schedule("--depth", options.depth, 1e-3);
+  if (!options.speed.empty()) setup.spindle_speed = parse_schedule("--speed", options.speed, rpm_to_rad_s(1.0));
+  setup.force_noise = options.force_noise;
+  setup.seed = options.seed;
+  return setup;
+}
+
+// Rows are dense enough for the modes, and for the sensors where there are any to feed.
+double row_rate_hz(const Cell& cell, const MillingSetup& setup, const SimulateOptions& options) {
+  if (options.rate_hz > 0.0) return options.rate_hz;
+  double rate = lowest_sample_rate_hz(setup.modes);
+  if (!options.can.empty() && cell.can)
+    for (const AccelerometerSettings& sensor : cell.can->accelerometers) rate = std::max(rate, sensor.sample_rate_hz);
+  return std::ceil(rate / kRateGrain - 1e-9) * kRateGrain;
+}
+
+// A text file, or standard output for "-"; says so when it cannot be written to the end.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& name) : name_{name} {
+    if (name == "-") return;
+    file_.open(name, std::ios::binary);
+    if (!file_) throw InputError(name, 0, "cannot be written");
+  }
+  std::ostream& stream() { return name_ == "-" ? std::cout : file_; }
+  void finish() {
+    if (!stream().flush()) throw InputError(name_, 0, "cannot be written to the end; is the disk full?");
+  }
+
+ private:
+  std::string name_;
+  std::ofstream file_;
+};
+
+class CsvOutput {
+ public:
+  explicit CsvOutput(const std::string& name) : file_{name} {
+    file_.stream() << "time_s,fx_n,fy_n,fz_n,x_um,y_um,z_um,chip_um,spindle_speed_rpm\n";
+  }
+  void write(const MillingState& s) {
+    std::array<char, 256> row{};
+    const int length =
+        std::snprintf(row.data(), row.size(), "%.9g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.9g\n", s.time, s.force.x(),
+                      s.force.y(), s.force.z(), s.displacement.x() * 1e6, s.displacement.y() * 1e6,
+                      s.displacement.z() * 1e6, s.chip * 1e6, rad_s_to_rpm(s.spindle_speed));
+    file_.stream().write(row.data(), length);
+  }
+  void finish() { file_.finish(); }
+
+ private:
+  OutputFile file_;
+};
+
+class CanOutput {
+ public:
+  CanOutput(const std::string& name, const Cell& cell, const SimulateOptions& options)
+      : file_{name},
+        encoder_{read_dbc(require(cell, cell.can, "can").dbc),
+                 *cell.can,
+                 cell.file.string(),
+                 {options.noise_m_per_s2, options.seed},
+                 kLogOrigin} {}
+  void write(const MillingState& s) {
+    std::array<char, kMaxCandumpLine> line;
+    for (const CanFrame& frame : encoder_.advance(s.time, s.velocity, s.spindle_speed)) {
+      file_.stream().write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
+      ++frames_;
+    }
+  }
+  void finish() { file_.finish(); }
+  [[nodiscard]] std::int64_t frames() const { return frames_; }
+  [[nodiscard]] std::int64_t saturated() const { return encoder_.saturated(); }
+
+ private:
+  OutputFile file_;
+  CanEncoder encoder_;
+  std::int64_t frames_ = 0;
+};
+
+struct Peaks {
+  double displacement = 0.0, force = 0.0, acceleration = 0.0, chip = 0.0;  // SI
+
+  void add(const MillingState& s) {
+    displacement = std::max(displacement, s.displacement.norm());
+    force = std::max(force, s.force.norm());
+    acceleration = std::max(acceleration, s.acceleration.norm());
+    chip = std::max(chip, s.chip);
+  }
+};
+
+void simulate(const SimulateOptions& options) {
+  if (options.json && options.csv == "-")
+    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
+  const bool needs_can = !options.can.empty();
+  const Cell cell = read_cell(options.cell, {.dbc = needs_can, .bus = false});
+  const MillingSetup setup = setup_of(cell, options);
+  const double rate_hz = row_rate_hz(cell, setup, options);
+  std::optional<MillingSimulation> milling;
+  try {
+    milling.emplace(setup, rate_hz);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(options.cell, 0, error.what());
+  }
+  std::optional<CsvOutput> csv;
+  std::optional<CanOutput> can;
+  if (!options.csv.empty()) csv.emplace(options.csv);
+  if (needs_can) can.emplace(options.can, cell, options);
+
+  Peaks peaks;
+  std::vector<MillingState> states;
+  const auto rows = static_cast<std::int64_t>(std::floor(options.duration_s * rate_hz * (1.0 + 1e-12))) + 1;
+  {
+    Progress progress("milling");
+    for (std::int64_t i = 0; i < rows; ++i) {
+      const MillingState& state = i == 0 ? milling->state() : milling->advance();
+      if (csv) csv->write(state);
+      if (can) can->write(state);
+      if (!options.plot.empty()) states.push_back(state);
+      peaks.add(state);
+      if (i % 1024 == 0) progress.update(static_cast<double>(i) / static_cast<double>(rows));
+    }
+  }
+  if (csv) csv->finish();
+  if (can) can->finish();
+  if (!options.plot.empty())
+    plot::write_figure(simulation_figure("Simulated cut: " + setup.material.name, states), options.plot);
+
+  if (can && can->saturated() > 0)
+    std::cerr << "stillcut: " << options.can << ": " << can->saturated()
+              << " samples stand at the end of the sensor's range\n";
+  if (options.json) {
+    nlohmann::ordered_json summary{{"duration_s", options.duration_s},
+                                   {"rows", rows},
+                                   {"row_rate_hz", rate_hz},
+                                   {"peak_force_n", peaks.force},
+                                   {"peak_displacement_um", peaks.displacement * 1e6},
+                                   {"peak_acceleration_m_per_s2", peaks.acceleration},
+                                   {"largest_chip_um", peaks.chip * 1e6}};
+    if (can) summary.update({{"frames", can->frames()}, {"samples_saturated", can->saturated()}});
+    std::cout << summary.dump() << '\n';
+  } else if (options.csv != "-") {
+    std::printf("%g s milled: peak force %.0f N, displacement %.0f µm, acceleration %.0f m/s², chip %.0f µm\n",
+                options.duration_s, peaks.force, peaks.displacement * 1e6, peaks.acceleration, peaks.chip * 1e6);
+  }
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("simulate", "Mill in simulated time; write motion, forces and sensor frames");
+  const auto options = std::make_shared<SimulateOptions>();
+  command->add_option("CELL", options->cell, "Cell file")->required();
+  command->add_option("--duration", options->duration_s, "How long to mill, s")->required()->check(CLI::PositiveNumber);
+  command->add_option("--depth", options->depth, "Axial depth over time, s:mm,s:mm,... (default: the cell's)");
+  command->add_option("--speed", options->speed, "Spindle speed over time, s:rpm,s:rpm,... (default: the cell's)");
+  command->add_option("--posture", options->posture, "Posture of the dynamics map (default: the cell's)");
+  command->add_option("--csv", options->csv, "Write time, force, displacement, chip and speed; - is standard output");
+  command->add_option("--can", options->can, "Write what the sensors would send, as candump -L does");
+  command->add_option("--plot", options->plot, "Draw the cut to a .svg or .png file");
+  command
+      ->add_option("--rate", options->rate_hz,
+                   "Rows a second (default: 20 a period of the highest mode, or the sensors')")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--noise", options->noise_m_per_s2, "Sensor noise, m/s² rms")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--force-noise", options->force_noise, "Variation of the cutting force, rms, relative")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 0.5));
+  command->add_option("--seed", options->seed, "Of both noises")->capture_default_str();
+  command->add_flag("--json", options->json, "One JSON object on standard output");
+  command->footer(
+      "Example: air, entry, a sound cut, then so deep that it chatters, exit:\n"
+      "  stillcut simulate examples/demo-cell/cell.toml --duration 6 --can cut.log --plot cut.svg \\\n"
+      "    --depth 0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,5.3:3.6,5.4:0");
+  command->callback([options] { simulate(*options); });
+}
+
+}  // namespace stillcut

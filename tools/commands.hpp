@@ -1,0 +1,19 @@
+// The commands of `stillcut`: each add_*_command (in command_NAME.cpp) adds one subcommand to the application. A command
+// throws InputError for bad input (exit 3) and ComponentError for a missing component (exit 4); main turns them into the
+// one line and the exit code that contracts promise.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace stillcut {
+
+void add_lobes_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
+void add_simulate_command(CLI::App& app);
+
+inline constexpr int kExitUsage = 2, kExitBadInput = 3, kExitComponentMissing = 4;
+
+// Parses the command line and runs what it asks for; prints errors as "PROGRAM: ..." and returns the exit code.
+int run_command_line(CLI::App& app, int argc, char** argv);
+
+}  // namespace stillcut

@@ -1,0 +1,67 @@
+#include "tools/live_loop.hpp"
+
+#include <ctime>
+
+namespace stillcut {
+namespace {
+
+// How far behind the clock a silent tick moves data time: a frame stamped before that has long been in the socket, so no
+// frame can still come from a time that was declared silent.
+constexpr std::int64_t kBehindClock_ns = 20'000'000;
+// Frames a tick takes at most, so that a flood delays one tick and not the thread for good.
+constexpr int kBatchesATick = 32;
+
+std::int64_t realtime_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace
+
+bool LiveLoop::tick() noexcept {
+  const std::int64_t before_ns = realtime_ns();
+  if (channels_.lobes.update()) pipeline_.core().add_lobes(channels_.lobes.value());
+  bool drained = false;
+  for (int batch = 0; batch < kBatchesATick && !drained; ++batch) {
+    const std::size_t count = bus_.receive(batch_);
+    drained = count < batch_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      feed_messages_until(batch_[i].stamp_ns);
+      pipeline_.feed(batch_[i]);
+      if (record_) (void)channels_.recorded.push(batch_[i]);  // a full ring is counted by the ring
+      hand_over();
+    }
+  }
+  if (live_clock_ && drained) {
+    feed_messages_until(before_ns - kBehindClock_ns);
+    pipeline_.core().advance(before_ns - kBehindClock_ns);
+    hand_over();
+  }
+  return bus_.state() != BusState::ended;
+}
+
+void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {
+  while (has_waiting_ || channels_.messages.pop(waiting_)) {
+    has_waiting_ = true;
+    if (const auto* state = std::get_if<RobotState>(&waiting_)) {
+      if (state->stamp_ns > stamp_ns) return;
+      pipeline_.core().add_robot_state(*state);
+    } else if (const auto* ack = std::get_if<CorrectionAck>(&waiting_)) {
+      if (ack->stamp_ns > stamp_ns) return;
+      pipeline_.core().add_ack(*ack);
+    }
+    has_waiting_ = false;
+  }
+}
+
+void LiveLoop::hand_over() noexcept {
+  Core& core = pipeline_.core();
+  if (core.outputs().empty()) return;
+  // Relaxed: the ring's release below orders it before the first output.
+  channels_.origin_ns.store(core.origin_ns(), std::memory_order_relaxed);
+  for (const Output& output : core.outputs()) (void)channels_.outputs.push(output);
+  core.clear_outputs();
+}
+
+}  // namespace stillcut

@@ -1,0 +1,55 @@
+// The daemon's real-time side: what one tick of the loop does, and the wait-free channels to the ordinary threads.
+//
+//   from                to                  through
+//   model thread        loop                lobes        snapshot, newest diagram
+//   subscriber thread   loop                messages     ring, robot states and acknowledgements
+//   loop                publisher thread    outputs      ring, events, corrections, status
+//   loop                recorder thread     recorded     ring, every frame that went into the core
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "drivers/can/can_bus.hpp"
+#include "drivers/lcm/lcm_log.hpp"
+#include "models/lobe_diagram.hpp"
+#include "rt/ring.hpp"
+#include "rt/snapshot.hpp"
+#include "tools/pipeline.hpp"
+
+namespace stillcut {
+
+struct LoopChannels {
+  Snapshot<LobeDiagram> lobes;
+  Ring<RobotMessage> messages{256};
+  Ring<Output> outputs{4096};
+  Ring<CanFrame> recorded{32768};  // ten seconds of a triaxial 25.6 kHz sensor
+  std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
+};
+
+class LiveLoop {
+ public:
+  // live_clock: the bus stamps with this host's CLOCK_REALTIME, so silence can be told from it; false for a log.
+  // record: hand every frame to the recorder's ring. All references must outlive the loop.
+  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record) noexcept
+      : bus_{bus}, pipeline_{pipeline}, channels_{channels}, live_clock_{live_clock}, record_{record} {}
+
+  // One tick on the real-time thread; false when the bus has come to its end (a log). No allocation, no lock, no system
+  // call but receive and clock.
+  bool tick() noexcept;
+
+ private:
+  void feed_messages_until(std::int64_t stamp_ns) noexcept;
+  void hand_over() noexcept;
+
+  CanBus& bus_;
+  Pipeline& pipeline_;
+  LoopChannels& channels_;
+  bool live_clock_, record_;
+  std::array<CanFrame, 64> batch_{};
+  RobotMessage waiting_{};
+  bool has_waiting_ = false;
+};
+
+}  // namespace stillcut

@@ -1,0 +1,45 @@
+#include "tools/pipeline.hpp"
+
+namespace stillcut {
+
+CoreSettings core_settings(const Cell& cell) {
+  const Tool& tool = require(cell, cell.tool, "tool");
+  const Cut& cut = require(cell, cell.cut, "cut");
+  const SpindleLimits& spindle = require(cell, cell.spindle, "spindle");
+  const CanSettings& can = require(cell, cell.can, "can");
+
+  CoreSettings settings;
+  for (const AccelerometerSettings& accelerometer : can.accelerometers) {
+    std::uint8_t axes = 0;
+    for (int a = 0; a < kMaxAxes; ++a) axes |= accelerometer.axis[a].empty() ? 0 : 1U << a;
+    settings.monitor.sensors.push_back({accelerometer.sample_rate_hz, axes});
+  }
+  settings.monitor.highest_speed = spindle.max_speed;
+  settings.monitor.nominal_speed = cut.spindle_speed;
+  settings.monitor.has_speed_signal = !can.spindle_speed.empty();
+  settings.compensator.mode = cell.mode;
+  settings.compensator.teeth = tool.teeth;
+  settings.compensator.spindle = spindle;
+  settings.axial_depth = cut.axial_depth;
+  settings.feed_direction = cut.feed_direction;
+  settings.nominal_speed = cut.spindle_speed;
+  return settings;
+}
+
+Pipeline::Pipeline(const Cell& cell)
+    : decoder_{read_dbc(require(cell, cell.can, "can").dbc), *cell.can, cell.file.string()},
+      core_{core_settings(cell)} {}
+
+bool Pipeline::feed(const CanFrame& frame) noexcept {
+  if (!core_.accept_frame(frame.stamp_ns)) return false;
+  if (frame.is_error()) {
+    core_.add_bus_error(frame.id, frame.data[1]);
+    return false;
+  }
+  if (!decoder_.decode(frame, decoded_)) return false;
+  if (decoded_.has_speed) core_.add_speed(decoded_.spindle);
+  for (int b = 0; b < decoded_.blocks; ++b) core_.add_samples(decoded_.block[b]);
+  return decoded_.has_speed || decoded_.blocks > 0;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,237 @@
+#include "tools/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/plot_canvas.hpp"
+#include "tools/plot_scale.hpp"
+
+namespace stillcut::plot {
+namespace {
+
+constexpr double kLeft = 92, kRight = 28, kScaleRight = 92, kTop = 24, kBottom = 52, kBetween = 20, kTitleRoom = 20;
+constexpr double kSmall = 11.5, kMiddle = 13.0, kLarge = 19.0;
+constexpr Color kGrid{0.90, 0.90, 0.92}, kFrame{0.45, 0.45, 0.48};
+
+// From data to px in one panel.
+struct View {
+  Box box;
+  Range x, y;  // y: of the logarithms on a logarithmic axis
+  bool logarithmic;
+  [[nodiscard]] double px(double value) const { return box.left + (value - x.low) / x.span() * box.width(); }
+  [[nodiscard]] double py(double value) const {
+    const double at = !logarithmic ? value : value > 0.0 ? std::log10(value) : std::isnan(value) ? value : y.low;
+    return box.bottom - (at - y.low) / y.span() * box.height();
+  }
+};
+
+struct Tick {
+  double value;
+  std::string text;
+};
+
+std::vector<Tick> ticks_of(Range range, int count, bool logarithmic) {
+  std::vector<Tick> result;
+  const std::vector<double> at = logarithmic ? decade_ticks(range) : ticks(range, count);
+  for (const double value : at) {
+    if (logarithmic) {
+      const double power = std::pow(10.0, value);
+      result.push_back({power, tick_text(power, std::min(power, 1.0))});
+    } else {
+      result.push_back({value, tick_text(value, at.size() > 1 ? at[1] - at[0] : 1.0)});
+    }
+  }
+  return result;
+}
+
+std::vector<Tick> x_ticks(const View& view) { return ticks_of(view.x, 12, false); }
+std::vector<Tick> y_ticks(const View& view) {
+  return ticks_of(view.y, std::max(3, static_cast<int>(view.box.height() / 34)), view.logarithmic);
+}
+
+Range x_range(const Figure& figure) {
+  std::vector<const std::vector<double>*> data;
+  std::vector<double> ends;
+  for (const Panel& panel : figure.panels) {
+    for (const Line& line : panel.lines) data.push_back(&line.x);
+    for (const Scatter& points : panel.points) data.push_back(&points.x);
+    if (panel.image) ends.insert(ends.end(), {panel.image->x_begin, panel.image->x_end});
+  }
+  data.push_back(&ends);
+  return axis_range(figure.x, data, 0.0);
+}
+
+Range y_range(const Panel& panel) {
+  std::vector<const std::vector<double>*> data;
+  std::vector<double> levels;
+  for (const Line& line : panel.lines) data.push_back(&line.y);
+  for (const Scatter& points : panel.points) data.push_back(&points.y);
+  for (const Limit& limit : panel.limits) levels.push_back(limit.y);
+  if (panel.image) return axis_range({.label = "", .min = panel.image->y_begin, .max = panel.image->y_end}, data, 0.0);
+  data.push_back(&levels);
+  return axis_range(panel.y, data, 0.07);
+}
+
+void draw_grid(Canvas& canvas, const View& view) {
+  for (const Tick& x : x_ticks(view))
+    canvas.segment(view.px(x.value), view.box.top, view.px(x.value), view.box.bottom, kGrid, 1.0, false);
+  for (const Tick& y : y_ticks(view))
+    canvas.segment(view.box.left, view.py(y.value), view.box.right, view.py(y.value), kGrid, 1.0, false);
+}
+
+void draw_axes(Canvas& canvas, const View& view, const Panel& panel, const Axis& x, bool last) {
+  for (const Tick& y : y_ticks(view)) {
+    canvas.segment(view.box.left - 4, view.py(y.value), view.box.left, view.py(y.value), kFrame, 1.0, false);
+    canvas.text(view.box.left - 8, view.py(y.value) + 4, y.text, {.size = kSmall, .align = Align::right});
+  }
+  for (const Tick& tick : x_ticks(view)) {
+    const double at = view.px(tick.value);
+    canvas.segment(at, view.box.bottom, at, view.box.bottom + 4, kFrame, 1.0, false);
+    if (last) canvas.text(at, view.box.bottom + 18, tick.text, {.size = kSmall, .align = Align::center});
+  }
+  canvas.outline(view.box, kFrame, 1.0);
+  const double middle = 0.5 * (view.box.top + view.box.bottom);
+  canvas.text(24, middle, panel.y.label, {.size = kMiddle, .align = Align::center, .upright = true});
+  canvas.text(view.box.left, view.box.top - 6, panel.title, {.size = kMiddle, .bold = true});
+  if (last)
+    canvas.text(0.5 * (view.box.left + view.box.right), view.box.bottom + 40, x.label,
+                {.size = kMiddle, .align = Align::center});
+}
+
+void draw_color_scale(Canvas& canvas, const View& view, const Image& image) {
+  const Box bar{view.box.right + 12, view.box.top, view.box.right + 24, view.box.bottom};
+  Image ramp{.x_begin = 0,
+             .x_end = 1,
+             .y_begin = 0,
+             .y_end = 1,
+             .columns = 1,
+             .rows = 128,
+             .values = {},
+             .low = 0,
+             .high = 127,
+             .scale_label = ""};
+  for (int i = 0; i < ramp.rows; ++i) ramp.values.push_back(static_cast<float>(i));
+  canvas.image(bar, ramp);
+  canvas.outline(bar, kFrame, 1.0);
+  const Range range{image.low, image.high};
+  for (const Tick& level : ticks_of(range, static_cast<int>(bar.height() / 40), false)) {
+    const double y = bar.bottom - (level.value - range.low) / range.span() * bar.height();
+    canvas.text(bar.right + 5, y + 4, level.text, {.size = kSmall - 1});
+  }
+  canvas.text(bar.right + 46, 0.5 * (bar.top + bar.bottom), image.scale_label,
+              {.size = kSmall, .align = Align::center, .upright = true});
+}
+
+void draw_line(Canvas& canvas, const View& view, const Line& line) {
+  const Line few = decimated(line, view.x, static_cast<int>(view.box.width() * 1.5));
+  std::vector<double> x(few.x.size()), y(few.x.size());
+  std::transform(few.x.begin(), few.x.end(), x.begin(), [&](double v) { return view.px(v); });
+  std::transform(few.y.begin(), few.y.end(), y.begin(), [&](double v) { return view.py(v); });
+  canvas.polyline(x, y, few);
+}
+
+void draw_data(Canvas& canvas, const View& view, const Panel& panel) {
+  canvas.clip(view.box);
+  if (panel.image) canvas.rectangle(view.box, scale_color(0.0));
+  for (const Band& band : panel.bands)
+    canvas.rectangle({view.px(band.begin), view.box.top, view.px(band.end), view.box.bottom}, band.color, band.opacity);
+  if (!panel.image) draw_grid(canvas, view);
+  if (const auto& image = panel.image; image && image->columns > 0 && image->rows > 0)
+    canvas.image({view.px(image->x_begin), view.py(image->y_end), view.px(image->x_end), view.py(image->y_begin)},
+                 *image);
+  for (const Line& line : panel.lines) draw_line(canvas, view, line);
+  for (const Scatter& points : panel.points)
+    for (std::size_t i = 0; i < points.x.size(); ++i)
+      if (std::isfinite(points.x[i]) && std::isfinite(points.y[i]))
+        canvas.disc(view.px(points.x[i]), view.py(points.y[i]), points.size, points.color);
+  for (const Limit& limit : panel.limits) {
+    canvas.segment(view.box.left, view.py(limit.y), view.box.right, view.py(limit.y), limit.color, 1.3, true);
+    canvas.text(view.box.left + 8, view.py(limit.y) - 5, limit.text,
+                {.size = kSmall, .color = limit.color, .halo = true});
+  }
+  for (const EventMark& event : panel.events)
+    canvas.segment(view.px(event.x), view.box.top, view.px(event.x), view.box.bottom, event.color, 1.3, false);
+  canvas.unclip();
+}
+
+// Texts of events side by side where they would run into each other: the later one goes a line lower.
+void draw_texts(Canvas& canvas, const View& view, const Panel& panel) {
+  std::vector<double> row_end;
+  for (const EventMark& event : panel.events) {
+    if (event.text.empty() || event.x < view.x.low || event.x > view.x.high) continue;
+    const double width = canvas.text_width(event.text, kSmall) + 10, x = view.px(event.x);
+    const bool leftward = x + width > view.box.right;
+    const double begin = leftward ? x - width : x;
+    std::size_t row = 0;
+    while (row < row_end.size() && row_end[row] > begin) ++row;
+    if (row == row_end.size()) row_end.push_back(0.0);
+    row_end[row] = begin + width;
+    canvas.text(x + (leftward ? -5 : 5), view.box.top + 15 + 15 * static_cast<double>(row), event.text,
+                {.size = kSmall, .color = event.color, .align = leftward ? Align::right : Align::left, .halo = true});
+  }
+  for (const Note& note : panel.notes) {
+    const double x = view.px(note.x), width = canvas.text_width(note.text, kSmall);
+    const Align align = x + width > view.box.right ? Align::right : Align::left;
+    canvas.text(x, view.py(note.y), note.text, {.size = kSmall, .color = note.color, .align = align, .halo = true});
+  }
+}
+
+// In the title's line, from the right: what each line, marker and band is.
+void draw_legend(Canvas& canvas, const View& view, const Panel& panel) {
+  double x = view.box.right;
+  const double y = view.box.top - 10;
+  const auto entry = [&](const std::string& label, auto&& sample) {
+    if (label.empty()) return;
+    x -= canvas.text_width(label, kSmall);
+    canvas.text(x, y + 4, label, {.size = kSmall});
+    if (panel.image) canvas.rectangle({x - 30, y - 7, x - 4, y + 6}, scale_color(0.25));  // as the data's ground is
+    sample(x - 28, x - 6);
+    x -= 44;
+  };
+  for (auto i = panel.bands.rbegin(); i != panel.bands.rend(); ++i)
+    entry(i->label, [&](double a, double b) {
+      canvas.rectangle({a, y - 6, b, y + 5}, i->color, std::min(1.0, i->opacity * 1.5));
+    });
+  for (auto i = panel.points.rbegin(); i != panel.points.rend(); ++i)
+    entry(i->label, [&](double a, double b) { canvas.disc(0.5 * (a + b), y, std::max(6.0, i->size), i->color); });
+  for (auto i = panel.lines.rbegin(); i != panel.lines.rend(); ++i)
+    entry(i->label,
+          [&](double a, double b) { canvas.segment(a, y, b, y, i->color, std::max(1.5, i->width), i->dashed); });
+}
+
+}  // namespace
+
+void write_figure(const Figure& figure, const std::filesystem::path& file) {
+  Canvas canvas(file, figure.width, figure.height);
+  double top = kTop;
+  if (!figure.title.empty()) canvas.text(kLeft, top += 14, figure.title, {.size = kLarge, .bold = true});
+  if (!figure.subtitle.empty()) canvas.text(kLeft, top += 24, figure.subtitle, {.size = kMiddle, .color = kFrame});
+  top += 10;
+
+  double shares = 0.0;
+  bool with_scale = false;
+  for (const Panel& panel : figure.panels) {
+    shares += panel.height;
+    with_scale = with_scale || panel.image;
+  }
+  const double gaps = static_cast<double>(figure.panels.size()) * (kBetween + kTitleRoom);
+  const double room = figure.height - top - kBottom - gaps;
+  const Range x = x_range(figure);
+  for (const Panel& panel : figure.panels) {
+    top += kBetween + kTitleRoom;
+    const double bottom = top + room * panel.height / shares;
+    const View view{{kLeft, top, figure.width - (with_scale ? kScaleRight : kRight), bottom},
+                    x,
+                    y_range(panel),
+                    panel.y.logarithmic};
+    draw_data(canvas, view, panel);
+    draw_axes(canvas, view, panel, figure.x, &panel == &figure.panels.back());
+    if (panel.image) draw_color_scale(canvas, view, *panel.image);
+    draw_texts(canvas, view, panel);
+    draw_legend(canvas, view, panel);
+    top = bottom;
+  }
+  canvas.finish();
+}
+
+}  // namespace stillcut::plot

@@ -1,0 +1,101 @@
+// Pictures of cuts: charts stacked in panels over one axis, drawn by cairo to .svg or .png. A figure is a plain value
+// that says what is to be seen; write_figure lays it out and draws it. The same figure gives the same file.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stillcut::plot {
+
+struct Color {
+  double red = 0.0, green = 0.0, blue = 0.0;  // 0..1
+};
+
+// Told apart by colour-blind readers too: the palette of Okabe and Ito (2008).
+inline constexpr Color kInk{0.13, 0.13, 0.15}, kGrey{0.55, 0.55, 0.58}, kOrange{0.902, 0.624, 0.0},
+    kSkyBlue{0.337, 0.706, 0.914}, kGreen{0.0, 0.620, 0.451}, kYellow{0.941, 0.894, 0.259}, kBlue{0.0, 0.447, 0.698},
+    kVermilion{0.835, 0.369, 0.0}, kPurple{0.800, 0.475, 0.655};
+
+struct Line {
+  std::vector<double> x, y;  // same length; NaN breaks the line
+  Color color = kBlue;
+  double width = 1.4;
+  bool dashed = false;
+  double opacity = 1.0;
+  std::string label;  // in the legend; empty: not there
+};
+
+struct Scatter {
+  std::vector<double> x, y;
+  Color color = kVermilion;
+  double size = 5.0;  // diameter, px
+  std::string label;
+};
+
+struct Band {  // a stretch of the x axis, shaded
+  double begin = 0.0, end = 0.0;
+  Color color = kSkyBlue;
+  double opacity = 0.18;
+  std::string label;
+};
+
+struct EventMark {  // a moment: vertical line through the panel, its text at the top
+  double x = 0.0;
+  std::string text;
+  Color color = kInk;
+};
+
+struct Limit {  // a horizontal dashed line, its text at the left end
+  double y = 0.0;
+  std::string text;
+  Color color = kVermilion;
+};
+
+struct Note {  // text in the panel at a point of the data
+  double x = 0.0, y = 0.0;
+  std::string text;
+  Color color = kInk;
+};
+
+// Values on a grid in colours from dark (low) to bright (high). Drawn under everything else of the panel.
+struct Image {
+  double x_begin = 0.0, x_end = 0.0, y_begin = 0.0, y_end = 0.0;
+  int columns = 0, rows = 0;
+  std::vector<float> values;  // rows * columns, the row of y_begin first
+  double low = 0.0, high = 1.0;
+  std::string scale_label;  // e.g. "dB re 1 m/s²"
+};
+
+struct Axis {
+  std::string label;                                                 // with unit
+  double min = std::numeric_limits<double>::quiet_NaN(), max = min;  // NaN: from the data
+  bool logarithmic = false;  // y axes only; what is not above zero stands at the lower end
+};
+
+struct Panel {
+  std::string title;
+  Axis y;
+  double height = 1.0;  // share of the figure's height, relative to the other panels
+  std::optional<Image> image;
+  std::vector<Band> bands;
+  std::vector<Line> lines;
+  std::vector<Scatter> points;
+  std::vector<Limit> limits;
+  std::vector<EventMark> events;
+  std::vector<Note> notes;
+};
+
+struct Figure {
+  std::string title, subtitle;
+  Axis x;  // shared by all panels
+  std::vector<Panel> panels;
+  int width = 1200, height = 900;  // px; a .png has 1.5 times as many
+};
+
+// Draws to `file`, .svg or .png by its name. Throws InputError for another name or a file that cannot be written.
+void write_figure(const Figure& figure, const std::filesystem::path& file);
+
+}  // namespace stillcut::plot

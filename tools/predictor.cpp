@@ -1,0 +1,81 @@
+#include "tools/predictor.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "drivers/files/dynamics_map_file.hpp"
+#include "models/interpolation.hpp"
+#include "models/lobes.hpp"
+
+namespace stillcut {
+namespace {
+
+// From a robot state's stamp to the first use of its diagram: more than the computation takes on the smallest machine.
+constexpr std::int64_t kUsableAfter_ns = 500'000'000;
+// A posture that has moved less than this since the last computation has the same lobes.
+constexpr double kSameAngle = 0.005;    // rad
+constexpr double kSameLength = 0.0005;  // m
+
+bool same_question(const RobotState& a, const RobotState& b) {
+  bool same = a.milling == b.milling && std::abs(a.feed_direction - b.feed_direction) < kSameAngle;
+  for (std::size_t j = 0; j < 6; ++j) same = same && std::abs(a.joint_position[j] - b.joint_position[j]) < kSameAngle;
+  for (std::size_t i = 0; i < 3; ++i) same = same && std::abs(a.tcp_position[i] - b.tcp_position[i]) < kSameLength;
+  const bool both_unknown = std::isnan(a.radial_depth) && std::isnan(b.radial_depth);
+  return same && (both_unknown || std::abs(a.radial_depth - b.radial_depth) < 0.1 * kSameLength);
+}
+
+}  // namespace
+
+Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
+  const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
+  tool_ = require(cell, cell.tool, "tool");
+  material_ = require(cell, cell.material, "material");
+  cut_ = require(cell, cell.cut, "cut");
+  spindle_ = require(cell, cell.spindle, "spindle");
+  map_ = read_dynamics_map(dynamics.map);
+  interpolation_ = {.modal = dynamics.modal, .power = dynamics.power};
+  try {
+    posture_ = dynamics.posture.empty() && map_.postures.size() == 1 ? map_.postures.front()
+                                                                     : find_posture(map_, dynamics.posture);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell_file_, 0, std::string("dynamics.posture: ") + error.what());
+  }
+}
+
+LobeDiagram Predictor::nominal() const {
+  try {
+    return compute(posture_, cut_);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell_file_, 0, error.what());
+  }
+}
+
+std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
+  if (!computed_for_ || !same_question(*computed_for_, state)) {
+    Posture posture;
+    posture.joints = state.joint_position;
+    posture.position = state.tcp_position;
+    Cut cut = cut_;
+    cut.feed_direction = state.feed_direction;
+    if (state.milling != Milling::unknown) cut.milling = state.milling;
+    if (std::isfinite(state.radial_depth)) cut.radial_depth = state.radial_depth;
+    try {
+      last_ = compute(posture, cut);
+    } catch (const std::invalid_argument&) {
+      return std::nullopt;  // an immersion or posture that cannot be; no diagram is better than a wrong one
+    }
+    computed_for_ = state;
+  }
+  last_.posture_stamp_ns = state.stamp_ns;
+  last_.usable_from_ns = state.stamp_ns + kUsableAfter_ns;
+  return last_;
+}
+
+LobeDiagram Predictor::compute(const Posture& posture, const Cut& cut) const {
+  const PredictedPosture predicted = predict_posture(map_, posture, interpolation_);
+  LobeDiagram diagram = compute_lobe_diagram(tool_, material_, cut, spindle_, predicted.posture.modes);
+  if (predicted.outside) diagram.valid = false;  // far from every tap test: say nothing rather than extrapolate
+  return diagram;
+}
+
+}  // namespace stillcut

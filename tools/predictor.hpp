@@ -1,0 +1,44 @@
+// Prediction beside the loop: from the robot's posture to a dated stability lobe diagram. Ordinary threads only; takes
+// milliseconds to seconds. Playback calls it in place, the daemon on its model thread.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "drivers/files/cell.hpp"
+#include "models/dynamics_map.hpp"
+#include "models/interpolation.hpp"
+#include "models/lobe_diagram.hpp"
+#include "rt/signals.hpp"
+
+namespace stillcut {
+
+class Predictor {
+ public:
+  // Reads the cell's dynamics map and finds its posture. Throws InputError.
+  explicit Predictor(const Cell& cell);
+
+  // For the cell file's posture and cut. Throws InputError for a cut that the lobes cannot describe.
+  [[nodiscard]] LobeDiagram nominal() const;
+
+  // For a robot state: posture, feed direction and immersion as the robot reports them, the cell's where it does not. The
+  // diagram is usable from a fixed time after the state's stamp, so that live run and playback take it up at the same
+  // frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
+  [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
+
+ private:
+  [[nodiscard]] LobeDiagram compute(const Posture& posture, const Cut& cut) const;
+
+  std::string cell_file_;
+  Tool tool_;
+  Material material_;
+  Cut cut_;
+  SpindleLimits spindle_;
+  DynamicsMap map_;
+  Interpolation interpolation_;
+  Posture posture_;
+  std::optional<RobotState> computed_for_;  // the state that last_ belongs to
+  LobeDiagram last_;
+};
+
+}  // namespace stillcut
