@@ -1,12 +1,14 @@
 #include "dsp/cut_gate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace stillcut {
 namespace {
 
 constexpr double kMustLast_s = 0.015;  // a single knock changes no state
+constexpr double kSameSpeed = 0.1;
 
 }  // namespace
 
@@ -22,6 +24,12 @@ CutGate::Change CutGate::step(double level, double speed, double step_s) noexcep
     revolutions_ = 0.0;
   }
   revolutions_ += speed * step_s / (2.0 * std::numbers::pi);
+  // Another speed has another quiet level: hear it anew.
+  if (!was_cutting && std::abs(speed - heard_speed_) > kSameSpeed * heard_speed_) {
+    heard_speed_ = speed;
+    air_ = revolutions_ = beyond_s_ = 0.0;
+    state_ = State::air;
+  }
   // The quiet level of the turning spindle: follows a fall soon, a rise only slowly (a warmer, louder spindle), and not
   // while the tool cuts.
   if (air_ > 0.0) {

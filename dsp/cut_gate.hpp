@@ -1,5 +1,5 @@
-// Is the tool in the cut? From the level of vibration against the lowest level heard at a turning spindle: idle, air, entry,
-// cut, exit. Entry holds for some revolutions, because the first teeth ring every mode.
+// Is the tool in the cut? From the level of vibration against the lowest level heard at a turning spindle: idle, air,
+// entry, cut, exit. Entry holds for some revolutions, because the first teeth ring every mode.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 namespace stillcut {
 
 struct CutGateSettings {
-  double entry_ratio = 1.6;        // level over air level at which the tool is in the cut
-  double exit_ratio = 1.25;        // and at which it has left it
-  double idle_speed = 6.3;         // rad/s (60 rpm): slower is standing still
+  double entry_ratio = 1.6;  // level over air level at which the tool is in the cut
+  double exit_ratio = 1.25;  // and at which it has left it
+  double idle_speed = 6.3;   // rad/s (60 rpm): slower is standing still
   double entry_revolutions = 5.0;
-  double air_fall_s = 0.3;         // how soon the air level follows a quieter spindle
-  double air_rise_s = 60.0;        // and a louder one
+  double air_fall_s = 0.3;   // how soon the air level follows a quieter spindle
+  double air_rise_s = 60.0;  // and a louder one
 };
 
 class CutGate {
@@ -31,12 +31,15 @@ class CutGate {
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] double air_level() const noexcept { return air_; }
-  [[nodiscard]] bool at_cutting_level(double level) const noexcept { return air_ > 0.0 && level > settings_.entry_ratio * air_; }
+  [[nodiscard]] bool at_cutting_level(double level) const noexcept {
+    return air_ > 0.0 && level > settings_.entry_ratio * air_;
+  }
 
  private:
   CutGateSettings settings_;
   State state_ = State::idle;
   double air_ = 0.0;          // 0: not heard yet
+  double heard_speed_ = 0.0;  // to which the air level belongs
   double revolutions_ = 0.0;  // since the state was entered
   double beyond_s_ = 0.0;     // how long the level has been beyond the limit that would change the state
 };

@@ -23,7 +23,8 @@ kiss_fftr_state* make_plan(int length) {
 
 }  // namespace
 
-RealFft::RealFft(int length) : length_{length}, plan_{make_plan(length), [](kiss_fftr_state* p) { kiss_fftr_free(p); }} {
+RealFft::RealFft(int length)
+    : length_{length}, plan_{make_plan(length), [](kiss_fftr_state* p) { kiss_fftr_free(p); }} {
   if (!plan_) throw std::bad_alloc();
 }
 

@@ -11,13 +11,15 @@ namespace stillcut {
 
 class RealFft {
  public:
-  // length: even, a product of 2, 3 and 5 (other factors would allocate while running); std::invalid_argument otherwise.
+  // length: even, a product of 2, 3 and 5 (other factors would allocate while running); std::invalid_argument
+  // otherwise.
   explicit RealFft(int length);
 
   [[nodiscard]] int length() const noexcept { return length_; }
   [[nodiscard]] int bins() const noexcept { return length_ / 2 + 1; }
 
-  // input: length() samples; output: bins() values, X[k] = sum x[n] exp(-2 pi i k n / length). Not for two threads at once.
+  // input: length() samples; output: bins() values, X[k] = sum x[n] exp(-2 pi i k n / length). Not for two threads at
+  // once.
   void transform(std::span<const float> input, std::span<std::complex<float>> output) noexcept;
 
  private:

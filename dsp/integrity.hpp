@@ -27,7 +27,8 @@ const char* describe(Doubt single) noexcept;
 
 class SampleCheck {
  public:
-  // Looks at sample `i` of a block; returns the doubts that it raises (kSaturated, kStuck, kNotFinite). Real-time thread.
+  // Looks at sample `i` of a block; returns the doubts that it raises (kSaturated, kStuck, kNotFinite). Real-time
+  // thread.
   std::uint32_t check(const SampleBlock& block, int i) noexcept;
   void forget_runs() noexcept;
 

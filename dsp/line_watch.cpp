@@ -58,22 +58,15 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
   set_prior({}, std::nan(""));
 }
 
-bool LineWatch::push(std::span<const float> residual) noexcept {
-  if (filled_ == 0 && begin_ + kept_ + hop_ > 2 * kept_) make_room();
-  const int at = begin_ + kept_ + filled_;  // past the end: kept() stays whole until the hop is complete
-  for (int a = 0; a < axes_; ++a) residual_[a][at] = residual[a];
-  if (++filled_ < hop_) return false;
+void LineWatch::finish_hop() noexcept {
   begin_ += hop_;
-  if (hops_in_window_ < kHopsAWindow) ++hops_in_window_;
-  if (hops_in_window_ == kHopsAWindow) {
-    transform();
-    judge();
-    find_candidates();
-  } else {
-    found_ = 0;
-  }
   filled_ = 0;
-  return true;
+  hops_in_window_ = std::min(hops_in_window_ + 1, kHopsAWindow);
+  found_ = 0;
+  if (hops_in_window_ < kHopsAWindow) return;
+  transform();
+  judge();
+  find_candidates();
 }
 
 void LineWatch::make_room() noexcept {

@@ -45,7 +45,14 @@ class LineWatch {
   LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings);
 
   // One residual sample of every axis; true when it completes a hop and the results below are new.
-  bool push(std::span<const float> residual) noexcept;
+  bool push(std::span<const float> residual) noexcept {
+    if (filled_ == 0 && begin_ + kept_ + hop_ > 2 * kept_) make_room();
+    const int at = begin_ + kept_ + filled_;  // past the end: kept() stays whole until the hop is complete
+    for (int a = 0; a < axes_; ++a) residual_[a][at] = residual[a];
+    if (++filled_ < hop_) return false;
+    finish_hop();
+    return true;
+  }
 
   // Of the newest hop: the strongest separate lines, strongest first, and the largest S over its limit.
   [[nodiscard]] std::span<const LineCandidate> candidates() const noexcept { return {candidates_.data(), found_}; }
@@ -62,6 +69,8 @@ class LineWatch {
     return std::span{residual_[axis]}.subspan(static_cast<std::size_t>(begin_), static_cast<std::size_t>(kept_));
   }
   [[nodiscard]] int window_length() const noexcept { return length_; }
+  // How far back a whole window can be taken out of kept().
+  [[nodiscard]] double longest_lag_s() const noexcept { return (kept_ - length_ - 2) / (bin_hz_ * length_); }
   [[nodiscard]] int hop_length() const noexcept { return hop_; }
 
   // The floor has seen enough to judge by.
@@ -80,6 +89,7 @@ class LineWatch {
   static constexpr int kHopsAWindow = 8, kHopsToStay = 4, kHopsToLearn = 32;
 
   void make_room() noexcept;
+  void finish_hop() noexcept;
   void transform() noexcept;
   void judge() noexcept;
   void find_candidates() noexcept;

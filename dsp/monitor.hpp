@@ -1,6 +1,7 @@
-// The chatter monitor: samples and spindle speed in, what the cut is doing and events out. It holds no clock, no socket, no
-// thread and no random number: time comes with the data, so a recording gives the live run's decisions bit for bit.
-// How it decides: docs/detection.md. After construction nothing here allocates, locks or throws; one thread calls it.
+// The chatter monitor: samples and spindle speed in, what the cut is doing and events out. It holds no clock, no
+// socket, no thread and no random number: time comes with the data, so a recording gives the live run's decisions bit
+// for bit. How it decides: docs/detection.md. After construction nothing here allocates, locks or throws; one thread
+// calls it.
 #pragma once
 
 #include <array>
@@ -33,8 +34,8 @@ struct MonitorSettings {
 struct MonitorView {
   std::int64_t stamp_ns = 0;  // of the newest sample used
   State state = State::idle;
-  double indicator = 0.0;     // 1 is the alarm limit; NaN when it cannot tell
-  double speed = 0.0;         // measured, rad/s
+  double indicator = 0.0;  // 1 is the alarm limit; NaN when it cannot tell
+  double speed = 0.0;      // measured, rad/s
   bool chatter = false;
   ChatterKind kind = ChatterKind::unknown;
   double chatter_frequency_hz = 0.0;  // NaN without chatter
@@ -72,12 +73,26 @@ class Monitor {
     bool heard = false;
   };
   enum class Line : std::uint8_t { nothing, on_order, free };
+  struct Suspect {  // a line that looks like chatter but has yet to last
+    Line line = Line::nothing;
+    double frequency_hz = 0.0, cycles = 0.0;  // cycles: phase turned in a revolution
+    int hops = 0;                             // heard in so many, less those since in which it was not
+    std::int64_t since_ns = 0;
+  };
 
   void finish_hop(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   void look_for_onset(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
   void end_chatter(std::int64_t stamp_ns, const char* why) noexcept;
-  [[nodiscard]] Line classify(const SensorPath& path, const LineCandidate& candidate, const Tone& tone) const noexcept;
+  void begin_chatter(std::size_t sensor, std::int64_t stamp_ns, const LineCandidate& candidate,
+                     const Tone& tone) noexcept;
+  [[nodiscard]] bool speed_confirmed(std::int64_t since_ns) const noexcept;
+  [[nodiscard]] double speed_uncertainty() const noexcept;
+  [[nodiscard]] Suspect classify(const SensorPath& path, const LineCandidate& candidate,
+                                 const Tone& tone) const noexcept;
+  [[nodiscard]] bool stands_out_of_the_orders(const SensorPath& path, const LineCandidate& candidate,
+                                              double spindle_hz) const noexcept;
+  [[nodiscard]] double speed_at(std::int64_t stamp_ns) const noexcept;
   [[nodiscard]] double away_from_order(double frequency_hz) const noexcept;
   [[nodiscard]] ChatterKind name_kind(double frequency_hz) const noexcept;
   void report_lost_frames(Sensor& sensor, std::int64_t samples_lost, std::int64_t stamp_ns) noexcept;
@@ -104,6 +119,7 @@ class Monitor {
   std::size_t chatter_sensor_ = 0;
   double below_s_ = 0.0, doubt_s_ = 0.0;
   int free_hops_ = 0;
+  std::array<Suspect, kMaxSensors> suspect_{};
   std::array<Event, kMaxEvents> events_{};
   std::size_t event_count_ = 0;
 };

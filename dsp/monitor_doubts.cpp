@@ -19,8 +19,8 @@ constexpr double kDoubtClears_s = 0.5;
 
 }  // namespace
 
-// A doubt that newly holds is a fault event. It is dropped again only after it has been absent for a while, so that a sensor
-// that comes and goes is one fault.
+// A doubt that newly holds is a fault event. It is dropped again only after it has been absent for a while, so that a
+// sensor that comes and goes is one fault.
 void Monitor::set_doubts(std::uint32_t mask, std::uint32_t doubts, std::int64_t stamp_ns, double seconds) noexcept {
   for (int d = 0; d < kDoubtCount; ++d) {
     const std::uint32_t bit = 1U << d;
@@ -85,11 +85,17 @@ void Monitor::update_silence(std::int64_t stamp_ns, double step_s) noexcept {
   set_doubts(kSensorSilent, silent ? kSensorSilent : kNoDoubt, stamp_ns, step_s);
 }
 
-void Monitor::emit(std::int64_t stamp_ns, EventType type, ChatterKind kind, double frequency_hz, const char* note) noexcept {
+void Monitor::emit(std::int64_t stamp_ns, EventType type, ChatterKind kind, double frequency_hz,
+                   const char* note) noexcept {
   if (event_count_ == kMaxEvents) return;
   const bool about_chatter = type == EventType::chatter_onset || type == EventType::chatter_end;
-  events_[event_count_++] = {stamp_ns, type, kind, frequency_hz, about_chatter ? view_.indicator : kNaN,
-                             view_.speed * 60.0 / (2.0 * std::numbers::pi), short_text(note)};
+  events_[event_count_++] = {stamp_ns,
+                             type,
+                             kind,
+                             frequency_hz,
+                             about_chatter ? view_.indicator : kNaN,
+                             view_.speed * 60.0 / (2.0 * std::numbers::pi),
+                             short_text(note)};
 }
 
 }  // namespace stillcut

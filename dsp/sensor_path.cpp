@@ -8,7 +8,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kMeanMemory_s = 0.03;  // gravity, drift and slow feed force leave the level through this
+constexpr double kMeanMemory_s = 0.03;   // gravity, drift and slow feed force leave the level through this
 constexpr double kLevelMemory_s = 0.03;  // at least; three revolutions where those are longer
 constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle worth following
 
@@ -25,18 +25,19 @@ SensorPath::SensorPath(const SensorSettings& sensor, const LineWatchSettings& wa
   }
 }
 
-double SensorPath::turn(double speed, double seconds) noexcept {
-  revolutions_ += speed * seconds / (2.0 * std::numbers::pi);
-  revolutions_ -= std::floor(revolutions_);
-  return revolutions_;
+void SensorPath::raise(std::uint32_t doubts) noexcept {
+  for (int d = 0; d < kDoubtCount; ++d) {
+    if ((doubts >> d & 1U) != 0) doubted_until_[d] = samples_ + watch_.window_length();
+  }
 }
 
 void SensorPath::skip(std::int64_t samples, double speed) noexcept {
-  turn(speed, static_cast<double>(samples) / rate_);
+  revolutions_ += speed / (2.0 * std::numbers::pi) * static_cast<double>(samples) / rate_;
+  revolutions_ -= std::floor(revolutions_);
   check_.forget_runs();
   if (samples > watch_.window_length() / 4) {
     watch_.clear_window();
-    doubted_[std::countr_zero(static_cast<unsigned>(kGap))] = watch_.window_length();
+    raise(kGap);
     return;
   }
   const std::array<float, kMaxAxes> silence{};
@@ -51,19 +52,18 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   }
   const auto mean_gain = static_cast<float>(1.0 / (kMeanMemory_s * rate_));
   const auto level_gain = static_cast<float>(1.0 / (std::max(kLevelMemory_s, 3.0 * revolution_s) * rate_));
-  const double step_s = 1.0 / rate_;
+  const double step = std::min(0.5, speed / (2.0 * std::numbers::pi * rate_));  // revolutions a sample
   hop_complete_ = false;
   int i = from;
   while (i < block.samples && !hop_complete_) {
-    const std::uint32_t raised = check_.check(block, i);
-    for (int d = 0; d < kDoubtCount; ++d) {
-      doubted_[d] = (raised >> d & 1U) != 0 ? watch_.window_length() : std::max(0, doubted_[d] - 1);
-    }
+    ++samples_;
+    if (const std::uint32_t raised = check_.check(block, i); raised != kNoDoubt) raise(raised);
     std::array<float, kMaxAxes> x{}, residual{};
     for (int a = 0; a < axes_; ++a) x[a] = block.acceleration[axis_[a]][i];
-    const double angle = turn(speed, step_s);
+    revolutions_ += step;
+    if (revolutions_ >= 1.0) revolutions_ -= 1.0;
     if (turning) {
-      filter_.process(angle, {x.data(), static_cast<std::size_t>(axes_)}, residual);
+      filter_.process(revolutions_, {x.data(), static_cast<std::size_t>(axes_)}, residual);
     } else {
       for (int a = 0; a < axes_; ++a) residual[a] = std::isfinite(x[a]) ? x[a] - mean_[a] : 0.0F;
     }
@@ -82,7 +82,7 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
 
 std::uint32_t SensorPath::doubts() const noexcept {
   std::uint32_t all = kNoDoubt;
-  for (int d = 0; d < kDoubtCount; ++d) all |= doubted_[d] > 0 ? 1U << d : 0U;
+  for (int d = 0; d < kDoubtCount; ++d) all |= doubted_until_[d] > samples_ ? 1U << d : 0U;
   return all;
 }
 

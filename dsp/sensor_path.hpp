@@ -1,5 +1,5 @@
-// One accelerometer's way through the monitor: check the samples, turn the spindle angle, take out what repeats with the
-// spindle, watch the rest for lines. Knows of gaps: missing samples are bridged with silence and counted.
+// One accelerometer's way through the monitor: check the samples, turn the spindle angle, take out what repeats with
+// the spindle, watch the rest for lines. Knows of gaps: missing samples are bridged with silence and counted.
 #pragma once
 
 #include <array>
@@ -40,9 +40,10 @@ class SensorPath {
   [[nodiscard]] const LineWatch& watch() const noexcept { return watch_; }
   [[nodiscard]] SynchronousFilter& filter() noexcept { return filter_; }
   [[nodiscard]] double sample_rate_hz() const noexcept { return rate_; }
+  [[nodiscard]] double bin_hz() const noexcept { return rate_ / watch_.window_length(); }
 
  private:
-  double turn(double speed, double seconds) noexcept;
+  void raise(std::uint32_t doubts) noexcept;
 
   double rate_;
   int axes_;
@@ -52,7 +53,8 @@ class SensorPath {
   SynchronousFilter filter_;
   LineWatch watch_;
   std::array<float, kMaxAxes> mean_{}, power_{}, residual_power_{};
-  std::array<int, kDoubtCount> doubted_{};  // samples until each doubt has left the window
+  std::int64_t samples_ = 0;                               // processed so far
+  std::array<std::int64_t, kDoubtCount> doubted_until_{};  // the sample at which each doubt has left the window
   bool hop_complete_ = false;
 };
 

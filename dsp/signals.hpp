@@ -1,6 +1,6 @@
-// What the monitor takes and gives, as plain values: decoded sensor samples and spindle speed in, events out. Every type is
-// trivially copyable, so it passes through a ring. Times are nanoseconds on the CAN stamps' clock; other quantities are SI
-// (m, s, rad) unless the name says otherwise.
+// What the monitor takes and gives, as plain values: decoded sensor samples and spindle speed in, events out. Every
+// type is trivially copyable, so it passes through a ring. Times are nanoseconds on the CAN stamps' clock; other
+// quantities are SI (m, s, rad) unless the name says otherwise.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ inline constexpr int kMaxSensors = 4;           // accelerometers in a cell
 // The samples of one sensor frame, oldest first. The stamp is that of the last sample; earlier ones lie 1/rate apart.
 struct SampleBlock {
   std::int64_t stamp_ns = 0;
-  std::uint8_t sensor = 0;          // index of the [[can.accelerometer]] table
-  std::uint8_t axes_present = 0;    // bit 0 x, bit 1 y, bit 2 z
+  std::uint8_t sensor = 0;        // index of the [[can.accelerometer]] table
+  std::uint8_t axes_present = 0;  // bit 0 x, bit 1 y, bit 2 z
   std::uint8_t samples = 0;
-  std::uint32_t frames_lost = 0;    // frames missing before this one, told by the sensor's counter
+  std::uint32_t frames_lost = 0;                     // frames missing before this one, told by the sensor's counter
   std::array<std::uint64_t, kMaxAxes> full_scale{};  // bit i: sample i stands at the end of its range
   std::array<std::array<float, kMaxSamplesPerBlock>, kMaxAxes> acceleration{};  // m/s^2, in tool axes; may hold NaN
 };
@@ -31,10 +31,25 @@ struct SpindleReading {
 };
 
 enum class EventType : std::int8_t {
-  cut_entry = 1, cut_exit = 2, chatter_onset = 3, chatter_end = 4, correction = 5, fault = 6, forced_vibration = 7
+  cut_entry = 1,
+  cut_exit = 2,
+  chatter_onset = 3,
+  chatter_end = 4,
+  correction = 5,
+  fault = 6,
+  forced_vibration = 7
 };
 enum class ChatterKind : std::int8_t { unknown = 0, regenerative = 1, structural = 2 };
-enum class State : std::int8_t { idle = 0, air = 1, entry = 2, cut = 3, exit = 4, chatter = 5, cannot_tell = 6, fault = 7 };
+enum class State : std::int8_t {
+  idle = 0,
+  air = 1,
+  entry = 2,
+  cut = 3,
+  exit = 4,
+  chatter = 5,
+  cannot_tell = 6,
+  fault = 7
+};
 using ShortText = std::array<char, 96>;  // zero-terminated; holds a note or a reason without the heap
 
 // Truncates to what fits; keeps the terminating zero.

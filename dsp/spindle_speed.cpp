@@ -6,8 +6,9 @@
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kLongestExtension_ns = 60'000'000;  // past this a silent drive is taken to hold its speed
+constexpr std::int64_t kLongestExtension_ns = 60'000'000;  // further from the readings the speed is taken to be held
 constexpr std::int64_t kOldestForSlope_ns = 250'000'000;   // readings further apart tell nothing about a ramp
+constexpr double kMissFades_ns = 100e6;
 
 }  // namespace
 
@@ -15,6 +16,10 @@ void SpindleSpeed::add(const SpindleReading& reading) noexcept {
   if (!std::isfinite(reading.speed)) return;
   const std::int64_t apart = reading.stamp_ns - last_.stamp_ns;
   if (readings_ > 0 && apart <= 0) return;
+  if (readings_ > 0) {
+    const double faded = missed_ * std::exp(-static_cast<double>(apart) / kMissFades_ns);
+    missed_ = std::max(faded, std::abs(reading.speed - at(reading.stamp_ns)));
+  }
   slope_ = readings_ > 0 && apart <= kOldestForSlope_ns
                ? (reading.speed - last_.speed) / (static_cast<double>(apart) * 1e-9)
                : 0.0;
@@ -24,12 +29,8 @@ void SpindleSpeed::add(const SpindleReading& reading) noexcept {
 
 double SpindleSpeed::at(std::int64_t stamp_ns) const noexcept {
   if (readings_ == 0) return 0.0;
-  const std::int64_t ahead = std::clamp<std::int64_t>(stamp_ns - last_.stamp_ns, 0, kLongestExtension_ns);
+  const std::int64_t ahead =
+      std::clamp<std::int64_t>(stamp_ns - last_.stamp_ns, -kLongestExtension_ns, kLongestExtension_ns);
   return last_.speed + slope_ * static_cast<double>(ahead) * 1e-9;
 }
-
-double SpindleSpeed::relative_ramp() const noexcept {
-  return last_.speed > 0.0 ? std::abs(slope_) / last_.speed : 0.0;
-}
-
 }  // namespace stillcut

@@ -20,12 +20,14 @@ class SpindleSpeed {
   [[nodiscard]] std::int64_t last_stamp_ns() const noexcept { return last_.stamp_ns; }
   [[nodiscard]] double last_speed() const noexcept { return last_.speed; }
 
-  // Relative change of speed per second between the last two readings: how hard the spindle is ramping.
-  [[nodiscard]] double relative_ramp() const noexcept;
+  // By how much recent readings missed what was extended to their stamps, rad/s: near 0 at constant speed and on an
+  // even ramp, large where a ramp begins or ends and where stamps jitter.
+  [[nodiscard]] double uncertainty() const noexcept { return missed_; }
 
  private:
   SpindleReading last_{};
-  double slope_ = 0.0;  // rad/s^2 between the last two readings
+  double slope_ = 0.0;   // rad/s^2 between the last two readings
+  double missed_ = 0.0;  // rad/s
   int readings_ = 0;
 };
 

@@ -5,18 +5,28 @@
 #include <cmath>
 
 namespace stillcut {
+namespace {
 
-SynchronousFilter::SynchronousFilter(int axes) : axes_{axes}, table_(static_cast<std::size_t>(kMaxKnots) * axes, 0.0F) {}
+constexpr double kRevolutionsUnclipped = 4.0;
+constexpr double kUsualMemory = 2.0;  // revolutions
+constexpr float kClip = 3.0F;         // times the usual residual
+
+}  // namespace
+
+SynchronousFilter::SynchronousFilter(int axes)
+    : axes_{axes}, table_(static_cast<std::size_t>(kMaxKnots) * axes, 0.0F) {}
 
 bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution) noexcept {
   samples_per_revolution_ = samples_per_revolution;
   const auto wanted = static_cast<unsigned>(std::clamp(0.9 * samples_per_revolution, 1.0, double{kMaxKnots}));
   const int knots = std::max(kMinKnots, static_cast<int>(std::bit_ceil(wanted)));
   // Hysteresis: near a power of two the number of knots must not flip with every speed message.
-  const bool close_enough = knots_ > 0 && 0.8 * samples_per_revolution <= knots_ && knots_ <= 2.2 * samples_per_revolution;
+  const bool close_enough =
+      knots_ > 0 && 0.8 * samples_per_revolution <= knots_ && knots_ <= 2.2 * samples_per_revolution;
   if (close_enough || knots == knots_) return false;
   knots_ = knots;
   std::fill(table_.begin(), table_.end(), 0.0F);
+  usual_.fill(0.0F);
   restart();
   until_gain_ = 0;
   return true;
@@ -30,7 +40,9 @@ void SynchronousFilter::process(double angle, std::span<const float> x, std::spa
   if (--until_gain_ < 0) {
     // The gain that forgets with the wanted memory; while little is learned the memory is what has been seen so far.
     const double memory = std::clamp(learned_revolutions_ + 0.5, 1.0, memory_);
-    gain_ = static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
+    gain_ =
+        static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
+    usual_gain_ = static_cast<float>(1.0 / (kUsualMemory * samples_per_revolution_));
     until_gain_ = std::max(8, static_cast<int>(samples_per_revolution_ / 4.0));
     learned_revolutions_ += until_gain_ / samples_per_revolution_;
   }
@@ -49,7 +61,10 @@ void SynchronousFilter::process(double angle, std::span<const float> x, std::spa
       continue;
     }
     const float e = x[a] - (b[0] * c[0][a] + b[1] * c[1][a] + b[2] * c[2][a] + b[3] * c[3][a]);
-    const float step = gain_ * e;
+    const float limit = kClip * kClip * usual_[a];
+    const bool clipped = e * e > limit && learned_revolutions_ > kRevolutionsUnclipped;
+    usual_[a] += usual_gain_ * ((clipped ? limit : e * e) - usual_[a]);
+    const float step = gain_ * (clipped ? std::copysign(std::sqrt(limit), e) : e);
     for (int i = 0; i < 4; ++i) c[i][a] += step * b[i];
     residual[a] = e;
   }

@@ -1,10 +1,10 @@
 // Takes out of a signal everything that repeats with the spindle: tooth passing, runout, every spindle order at once.
 //
 // The repeating part is kept as a periodic cubic B-spline over one revolution, y(theta) = sum_k c_k b(theta B - k), and
-// learned sample by sample: e = x - y(theta), c_k += g e b_k. It costs eight multiplications a sample whatever the number of
-// orders, and follows speed ramps because it lives in angle, not in time. A memory of M revolutions makes a notch of about
-// f_spindle / (2 pi M) on either side of each order; chatter between the orders passes untouched. Orders up to about a
-// third of the samples a revolution are removed. docs/detection.md has the measured response.
+// learned sample by sample: e = x - y(theta), c_k += g e b_k. It costs eight multiplications a sample whatever the
+// number of orders, and follows speed ramps because it lives in angle, not in time. A memory of M revolutions makes a
+// notch of about f_spindle / (2 pi M) on either side of each order; chatter between the orders passes untouched. Orders
+// up to about a third of the samples a revolution are removed. docs/detection.md has the measured response.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ class SynchronousFilter {
   void restart() noexcept { learned_revolutions_ = 0.0; }
 
   // One sample of every axis at a spindle angle (revolutions, 0 <= angle < 1). residual[a] = x[a] - synchronous part.
-  // A sample that is not finite leaves the table as it is and gives a residual of 0.
+  // Once learned, a step is held to what three times the usual residual would give, so that a knock is not learned and
+  // heard again each revolution. A sample that is not finite leaves the table as it is and gives a residual of 0.
   void process(double angle, std::span<const float> x, std::span<float> residual) noexcept;
 
   [[nodiscard]] double learned_revolutions() const noexcept { return learned_revolutions_; }
@@ -42,9 +43,10 @@ class SynchronousFilter {
   double samples_per_revolution_ = 0.0;
   double memory_ = 16.0;
   double learned_revolutions_ = 0.0;
-  float gain_ = 0.0F;
-  int until_gain_ = 0;  // samples until the gain is worked out again
-  std::vector<float> table_;  // [knot][axis]
+  float gain_ = 0.0F, usual_gain_ = 0.0F;
+  int until_gain_ = 0;                   // samples until the gain is worked out again
+  std::array<float, kMaxAxes> usual_{};  // mean square of the residual
+  std::vector<float> table_;             // [knot][axis]
 };
 
 }  // namespace stillcut

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kScanStep = 1.12;  // ratio of depths
+constexpr double kScanStep = 1.15;  // ratio of depths
 constexpr int kFinestLevel = 8;
 
 Collocation level(int index) { return {3.0 + 4.0 * index, 3.5 + 0.5 * index}; }
@@ -76,8 +76,8 @@ struct Scan {
 };
 
 Scan scan_depths(Cutting& cutting, double max_depth) {
-  constexpr double kLookCloser = 0.95;
-  double depth = 1e-3 * max_depth, radius = cutting.radius(depth);
+  constexpr double kLookCloser = 0.9;  // a peak of the radius above this may pass 1 between two steps
+  double depth = 2e-3 * max_depth, radius = cutting.radius(depth);
   Scan scan;
   while (radius >= 1.0) {
     const double high = depth;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "models/floquet.hpp"
 #include "models/linear_cut.hpp"
@@ -52,6 +53,11 @@ std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material,
   const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
   if (settings.method == LobeMethod::zeroth_order) {
     return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
+  }
+  if (modes.size() > kMostFloquetModes) {
+    throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
+                                " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
+                                "; use interpolation = \"modal\", or method zoa");
   }
   std::vector<DepthLimit> limits;
   for (const double speed : speeds) {

@@ -15,6 +15,8 @@ namespace stillcut {
 
 enum class LobeMethod { floquet, zeroth_order };
 
+inline constexpr int kMostFloquetModes = 64;
+
 struct LobeSettings {
   LobeMethod method = LobeMethod::floquet;
   double max_depth = 0.02;  // m
@@ -26,7 +28,8 @@ struct LobeSettings {
 std::vector<double> equally_spaced_speeds(double first, double last, int count);
 
 // Depth limits at the given speeds (rad/s) for modes in workpiece axes; the cut's own speed and depth play no part.
-// Throws std::invalid_argument for what cannot be computed. `progress` is told the share done, 0 to 1.
+// Throws std::invalid_argument for what cannot be computed, and for more than kMostFloquetModes modes with the Floquet
+// method: its cost grows with their cube. `progress` is told the share done, 0 to 1.
 std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material, const Cut& cut,
                                      std::span<const Mode> modes, std::span<const double> speeds,
                                      const LobeSettings& settings, const std::function<void(double)>& progress = {});

@@ -19,7 +19,7 @@ constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::
 }  // namespace
 
 void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
-  if (ack.sequence < 1 || ack.sequence > sequence_) return;  // not an answer to us
+  if (ack.sequence < first_sequence_ || ack.sequence > sequence_) return;  // no answer to what is asked now
   if (ack.accepted) {
     answered_ns_ = std::max(answered_ns_, ack.stamp_ns);
   } else {
@@ -43,6 +43,7 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
     chatter_since_ns_ = 0;
+    said_none_ = said_none_ && in.monitor->chatter;
     return;
   }
   held_back_ = false;
@@ -64,20 +65,22 @@ void Compensator::consider(const CompensatorInputs& in, OutputQueue& out) noexce
   const bool fading = !(heard.indicator >= 1.0);
   if (said_none_ || fading || (correcting_ && in.now_ns < act_until_ns_)) return;
 
-  SpeedQuestion question{heard.chatter_frequency_hz, settings_.teeth, heard.speed, in.axial_depth, settings_.spindle,
-                         in.lobes, {tried_.data(), tried_count_}};
+  SpeedQuestion question{
+      heard.chatter_frequency_hz,   settings_.teeth, heard.speed, in.axial_depth, settings_.spindle, in.lobes,
+      {tried_.data(), tried_count_}};
   if (correcting_ && settings_.mode == RuntimeMode::shadow) {
     question.tried = {};  // nothing was tried: nobody follows a shadow
     const SpeedChoice choice = choose_speed(question);
-    if (choice.found && std::abs(choice.target - choice_.target) > kShadowRetarget * choice_.target) start(in, choice, out);
+    if (choice.found && std::abs(choice.target - choice_.target) > kShadowRetarget * choice_.target)
+      start(in, choice, out);
     return;
   }
   if (correcting_) {  // it had its time and did not help: the next one
-    if (tried_count_ < kMaxTried) tried_[tried_count_++] = choice_.target;
+    tried_[tried_count_++] = choice_.target;
     question.tried = {tried_.data(), tried_count_};
   }
   const SpeedChoice choice = choose_speed(question);
-  if (choice.found) {
+  if (choice.found && tried_count_ < kMaxTried) {
     start(in, choice, out);
   } else {
     say_none(in, choice, out);
@@ -95,8 +98,12 @@ void Compensator::start(const CompensatorInputs& in, const SpeedChoice& choice, 
       plan_velocity(from, choice.target, 0.0, {settings_.spindle.acceleration, settings_.spindle.jerk});
   if (plan.error != TrajectoryError::none) return;
   if (!correcting_) {
-    base_speed_ = in.nominal_speed > 0.0 ? in.nominal_speed : heard.speed;
+    // A programmed speed that the spindle cannot turn is none.
+    const bool programmed =
+        in.nominal_speed >= settings_.spindle.min_speed && in.nominal_speed <= settings_.spindle.max_speed;
+    base_speed_ = programmed ? in.nominal_speed : heard.speed;
     answered_ns_ = in.now_ns;
+    first_sequence_ = sequence_ + 1;
   }
   correcting_ = true;
   choice_ = choice;
@@ -116,6 +123,7 @@ void Compensator::start(const CompensatorInputs& in, const SpeedChoice& choice, 
 
 void Compensator::say_none(const CompensatorInputs& in, const SpeedChoice& choice, OutputQueue& out) noexcept {
   choice_ = choice;
+  choice_.limited_by |= kNoStableSettingKnown;  // also where there were speeds left, but enough were tried in vain
   release(in, "no stable speed known", out);
   said_none_ = true;
   out.put(Event{in.monitor->stamp_ns, EventType::correction, ChatterKind::unknown, in.monitor->chatter_frequency_hz,
@@ -132,7 +140,8 @@ void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcep
   c.valid_for_ms = kValidFor_ms;
   c.mode = settings_.mode;
   c.kind = CorrectionKind::spindle_speed;
-  c.spindle_speed_rpm = rad_s_to_rpm(std::clamp(now.velocity, settings_.spindle.min_speed, settings_.spindle.max_speed));
+  c.spindle_speed_rpm =
+      rad_s_to_rpm(std::clamp(now.velocity, settings_.spindle.min_speed, settings_.spindle.max_speed));
   c.spindle_speed_target_rpm = rad_s_to_rpm(choice_.target);
   c.feed_override = base_speed_ > 0.0 ? c.spindle_speed_rpm / rad_s_to_rpm(base_speed_) : 1.0;
   c.feed_direction = in.feed_direction;

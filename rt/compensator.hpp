@@ -1,9 +1,10 @@
-// Turns heard chatter into corrections for the controller: choose a speed, go there on a jerk-limited ramp, keep the feed per
-// tooth, give it time to act, look again, release. Like the monitor it is a function of its inputs: no clock, no thread.
+// Turns heard chatter into corrections for the controller: choose a speed, go there on a jerk-limited ramp, keep the
+// feed per tooth, give it time to act, look again, release. Like the monitor it is a function of its inputs: no clock,
+// no thread.
 //
-// Modes: off computes nothing; shadow computes and publishes everything as shown-only; active asks to be followed, and does
-// so only while the controller is alive and has acknowledged. Every message carries its expiry, and every failure ends in
-// release to nominal. docs/compensation.md.
+// Modes: off computes nothing; shadow computes and publishes everything as shown-only; active asks to be followed, and
+// does so only while the controller is alive and has acknowledged. Every message carries its expiry, and every failure
+// ends in release to nominal. docs/compensation.md.
 #pragma once
 
 #include <array>
@@ -59,14 +60,14 @@ class Compensator {
 
   CompensatorSettings settings_;
   bool correcting_ = false;
-  bool held_back_ = false;       // a condition failed; released until it holds again
+  bool held_back_ = false;  // a condition failed; released until it holds again
   bool said_none_ = false;
-  bool refused_ = false;         // the controller refused or did not answer: no more in this episode
-  std::int64_t sequence_ = 0;
+  bool refused_ = false;                            // the controller refused or did not answer: no more in this episode
+  std::int64_t sequence_ = 0, first_sequence_ = 0;  // of the last message, of the first of this correction
   std::int64_t chatter_since_ns_ = 0, started_ns_ = 0, act_until_ns_ = 0, next_publish_ns_ = 0;
   std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this correction
   SpeedChoice choice_;
-  double base_speed_ = 0.0;      // rad/s at which the feed was programmed
+  double base_speed_ = 0.0;  // rad/s at which the feed was programmed
   double chatter_frequency_hz_ = 0.0;
   VelocityTrajectory ramp_;
   std::array<double, kMaxTried> tried_{};

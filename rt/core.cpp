@@ -12,10 +12,15 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kStatusEvery_ns = 100'000'000;
-constexpr double kPriorStep = 0.1;  // of margin, worth telling the monitor
+constexpr std::int64_t kLongestTold_ns = 5'000'000'000;  // of a silence; longer ones are told by their last seconds
+constexpr double kPriorStep = 0.1;                       // of margin, worth telling the monitor
 constexpr std::int64_t kControllerSilent_ns = 500'000'000;
 // A diagram computed for a posture older than this is not of the present posture (as long as states arrive).
-constexpr std::int64_t kLobesTooOld_ns = 1'000'000'000;
+constexpr std::int64_t kLobesTooOld_ns = 4'000'000'000;
+
+// CAN_ERR_* of linux/can/error.h
+constexpr std::uint32_t kControllerTrouble = 0x04, kBusOff = 0x40, kRestarted = 0x100;
+constexpr std::uint8_t kPassive = 0x30;  // receive or transmit
 
 }  // namespace
 
@@ -23,7 +28,8 @@ Core::Core(const CoreSettings& settings)
     : settings_{settings}, monitor_{settings.monitor}, compensator_{settings.compensator} {}
 
 bool Core::accept_frame(std::int64_t stamp_ns) noexcept {
-  if (origin_ns_ == 0) {
+  if (!started_) {
+    started_ = true;
     origin_ns_ = now_ns_ = stamp_ns;
     next_status_ns_ = stamp_ns + kStatusEvery_ns;
     monitor_.set_origin(stamp_ns);
@@ -47,7 +53,17 @@ bool Core::accept_frame(std::int64_t stamp_ns) noexcept {
 }
 
 void Core::advance(std::int64_t now_ns) noexcept {
-  if (origin_ns_ == 0 || now_ns <= now_ns_) return;
+  if (!started_ || now_ns <= now_ns_) return;
+  const std::int64_t skipped_ns = std::max<std::int64_t>(0, now_ns - next_status_ns_ - kLongestTold_ns);
+  next_status_ns_ += skipped_ns / kStatusEvery_ns * kStatusEvery_ns;
+  for (; next_status_ns_ <= now_ns; next_status_ns_ += kStatusEvery_ns) {
+    step_to(next_status_ns_);
+    put_status(next_status_ns_);
+  }
+  step_to(now_ns);
+}
+
+void Core::step_to(std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
   adopt_lobes(now_ns);
   const std::uint32_t doubts = view().doubts;
@@ -59,14 +75,14 @@ void Core::add_speed(const SpindleReading& reading) noexcept { monitor_.add_spee
 
 void Core::add_samples(const SampleBlock& block) noexcept {
   counters_.frames_lost += block.frames_lost;
+  bus_errors_told_ &= ~kBusOff;  // samples come: it is on again
   monitor_.add_samples(block);
   decide(now_ns_);
 }
 
-// Bus-off and error-passive lose frames: told once, until the bus says that it was restarted or frames flow again.
+// Bus-off and error-passive lose frames: told once, until the bus says that it was restarted or, after bus-off, samples
+// come.
 void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
-  constexpr std::uint32_t kControllerTrouble = 0x04, kBusOff = 0x40, kRestarted = 0x100;  // CAN_ERR_*
-  constexpr std::uint8_t kPassive = 0x30;                                               // receive or transmit
   if ((id & kRestarted) != 0) bus_errors_told_ = 0;
   const bool passive = (id & kControllerTrouble) != 0 && (controller & kPassive) != 0;
   const char* what = (id & kBusOff) != 0 ? "CAN bus-off: no frames until the controller is restarted"
@@ -75,8 +91,8 @@ void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
   const std::uint32_t kind = (id & kBusOff) != 0 ? kBusOff : kControllerTrouble;
   if (what == nullptr || (bus_errors_told_ & kind) != 0) return;
   bus_errors_told_ |= kind;
-  outputs_.put(Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed),
-                     short_text(what)});
+  outputs_.put(
+      Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed), short_text(what)});
 }
 
 void Core::add_robot_state(const RobotState& state) noexcept {
@@ -85,14 +101,19 @@ void Core::add_robot_state(const RobotState& state) noexcept {
 }
 
 void Core::add_lobes(const LobeDiagram& diagram) noexcept {
-  next_lobes_ = diagram;
+  // The first that came waits its turn whatever comes after it; only the newest of a full row is replaced.
+  next_lobes_count_ = std::min(next_lobes_count_ + 1, next_lobes_.size());
+  next_lobes_[next_lobes_count_ - 1] = diagram;
   adopt_lobes(now_ns_);
 }
 
 void Core::adopt_lobes(std::int64_t now_ns) noexcept {
-  if (!next_lobes_.valid || next_lobes_.usable_from_ns > now_ns) return;
-  lobes_ = next_lobes_;
-  next_lobes_.valid = false;
+  std::size_t due = 0;
+  while (due < next_lobes_count_ && next_lobes_[due].usable_from_ns <= now_ns) ++due;
+  if (due == 0) return;
+  lobes_ = next_lobes_[due - 1];
+  std::copy(next_lobes_.begin() + due, next_lobes_.begin() + next_lobes_count_, next_lobes_.begin());
+  next_lobes_count_ -= due;
   update_prior();
 }
 
@@ -101,7 +122,8 @@ void Core::update_prior() noexcept {
   prior_margin_ = predicted_margin();
   const LobeDiagram* diagram = lobes();
   std::array<ExpectedMode, LobeDiagram::kMaxModes> modes{};
-  const auto count = static_cast<std::size_t>(diagram == nullptr ? 0 : std::clamp(diagram->mode_count, 0, LobeDiagram::kMaxModes));
+  const auto count =
+      static_cast<std::size_t>(diagram == nullptr ? 0 : std::clamp(diagram->mode_count, 0, LobeDiagram::kMaxModes));
   for (std::size_t m = 0; m < count; ++m) modes[m] = {diagram->modes[m].frequency_hz, diagram->modes[m].damping_ratio};
   monitor_.expect({modes.data(), count}, prior_margin_);
 }
@@ -132,13 +154,6 @@ void Core::decide(std::int64_t now_ns) noexcept {
   in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
   in.controller_alive = robot_heard_ && now_ns - robot_.stamp_ns < kControllerSilent_ns;
   compensator_.step(in, outputs_);
-  if (now_ns >= next_status_ns_) {
-    put_status(now_ns);
-    const double margin = predicted_margin();
-    const bool moved = std::isnan(margin) != std::isnan(prior_margin_) || std::abs(margin - prior_margin_) > kPriorStep;
-    if (moved) update_prior();
-    next_status_ns_ += kStatusEvery_ns * ((now_ns - next_status_ns_) / kStatusEvery_ns + 1);
-  }
 }
 
 void Core::collect_events() noexcept {
@@ -158,8 +173,11 @@ void Core::put_status(std::int64_t now_ns) noexcept {
   s.chatter_frequency_hz = heard.chatter_frequency_hz;
   s.frames = counters_.frames;
   s.frames_lost = counters_.frames_lost;
-  s.lobes_stamp_ns = lobes_.posture_stamp_ns;
+  s.lobes_stamp_ns = lobes() == nullptr ? 0 : lobes_.posture_stamp_ns;
   outputs_.put(s);
+  const bool moved =
+      std::isnan(s.margin) != std::isnan(prior_margin_) || std::abs(s.margin - prior_margin_) > kPriorStep;
+  if (moved) update_prior();
 }
 
 }  // namespace stillcut

@@ -1,12 +1,14 @@
 // The core: monitor, prediction and compensator put together, as a function of what arrives. The live loop and playback
-// both drive exactly this, frame by frame in the order of their stamps, so a recording gives the live run's decisions again
-// bit for bit. It holds no clock, no socket, no thread; after construction it allocates, locks and throws nothing.
+// both drive exactly this, frame by frame in the order of their stamps, so a recording gives the live run's decisions
+// again bit for bit. It holds no clock, no socket, no thread; after construction it allocates, locks and throws
+// nothing.
 //
-// Order of calls for each CAN frame: accept_frame(stamp); if it says true, add_samples / add_speed for what the frame held;
-// then read outputs() and clear_outputs(). Robot messages go in when their stamp's turn has come. In silence the live
-// loop calls advance(now) instead, with a `now` that no later frame can undercut.
+// Order of calls for each CAN frame: accept_frame(stamp); if it says true, add_samples / add_speed for what the frame
+// held; then read outputs() and clear_outputs(). Robot messages go in when their stamp's turn has come. In silence the
+// live loop calls advance(now) instead, with a `now` that no later frame can undercut.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "dsp/monitor.hpp"
@@ -20,14 +22,14 @@ namespace stillcut {
 struct CoreSettings {
   MonitorSettings monitor;
   CompensatorSettings compensator;
-  double axial_depth = 0.0;    // m, nominal; a robot state overrides it
-  double feed_direction = 0.0; // rad, nominal
-  double nominal_speed = 0.0;  // rad/s, nominal
+  double axial_depth = 0.0;     // m, nominal; a robot state overrides it
+  double feed_direction = 0.0;  // rad, nominal
+  double nominal_speed = 0.0;   // rad/s, nominal
 };
 
 struct CoreCounters {
-  std::int64_t frames = 0;            // accepted
-  std::int64_t frames_lost = 0;       // told by counters
+  std::int64_t frames = 0;       // accepted
+  std::int64_t frames_lost = 0;  // told by counters
   std::int64_t frames_out_of_order = 0;
 };
 
@@ -41,11 +43,13 @@ class Core {
   void add_speed(const SpindleReading& reading) noexcept;
   void add_robot_state(const RobotState& state) noexcept;
   void add_ack(const CorrectionAck& ack) noexcept { compensator_.acknowledge(ack); }
-  // The controller's own report of trouble on the bus: an error frame's identifier and second data byte (linux/can/error.h).
+  // The controller's own report of trouble on the bus: an error frame's identifier and second data byte
+  // (linux/can/error.h).
   void add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept;
-  // Comes into use when data time reaches its usable_from_ns.
+  // Comes into use when data time reaches its usable_from_ns; until then up to four wait, in the order they came.
   void add_lobes(const LobeDiagram& diagram) noexcept;
-  // Data time has come this far without a frame.
+  // Data time has come this far without a frame. One long step says what many short ones would;
+  // only of a silence of more than five seconds it leaves the status messages of the beginning out.
   void advance(std::int64_t now_ns) noexcept;
 
   [[nodiscard]] std::span<const Output> outputs() const noexcept { return outputs_.items(); }
@@ -58,6 +62,7 @@ class Core {
   [[nodiscard]] const LobeDiagram* lobes() const noexcept;
 
  private:
+  void step_to(std::int64_t now_ns) noexcept;
   void decide(std::int64_t now_ns) noexcept;
   void collect_events() noexcept;
   void adopt_lobes(std::int64_t now_ns) noexcept;
@@ -71,9 +76,12 @@ class Core {
   Compensator compensator_;
   OutputQueue outputs_;
   CoreCounters counters_;
-  LobeDiagram lobes_, next_lobes_;
+  LobeDiagram lobes_;                        // the newest that may be used
+  std::array<LobeDiagram, 4> next_lobes_{};  // those whose time has yet to come
+  std::size_t next_lobes_count_ = 0;
   double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown
   RobotState robot_;
+  bool started_ = false;  // by the first frame
   bool robot_heard_ = false;
   bool out_of_order_told_ = false;
   std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well

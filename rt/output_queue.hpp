@@ -1,5 +1,5 @@
-// What the core wants to say during one step, in order, in a fixed store: filled by the core, emptied by whoever drives it
-// (the loop hands over to the publisher's ring, playback writes to files). One thread; nothing allocates.
+// What the core wants to say during one step, in order, in a fixed store: filled by the core, emptied by whoever drives
+// it (the loop hands over to the publisher's ring, playback writes to files). One thread; nothing allocates.
 #pragma once
 
 #include <array>

@@ -13,6 +13,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFrequencyError = 0.01;  // of f_c and of the spindle's speed: the pocket must be that wide
 constexpr double kAlreadyThere = 0.005;   // a target this near is no move
 constexpr double kSameTarget = 0.01;      // of one already tried
+constexpr double kHighestLobe = 1e6;      // beyond it speeds and frequency do not belong together
+constexpr int kMostLobes = 512;           // bounds the work; so high up the lobes run into one another
 
 double predicted_margin(const SpeedQuestion& q, double speed) noexcept {
   return q.lobes == nullptr ? kNaN : margin_at(*q.lobes, speed, q.axial_depth);
@@ -38,19 +40,18 @@ SpeedChoice choose_speed(const SpeedQuestion& q) noexcept {
   SpeedChoice best;
   best.margin_before = predicted_margin(q, q.speed);
   best.margin_after = kNaN;
-  if (!(q.chatter_frequency_hz > 0.0) || q.teeth < 1 || !(q.limits.min_speed > 0.0)) {
+  const double in_step = kTwoPi * q.chatter_frequency_hz / q.teeth;  // k = 1
+  const double highest_lobe = in_step / q.limits.min_speed;
+  const bool answerable = q.speed > 0.0 && q.teeth > 0 && in_step > 0.0 && highest_lobe < kHighestLobe;
+  if (!answerable || !(q.limits.max_speed >= q.limits.min_speed)) {
     best.limited_by = kNoStableSettingKnown;
     return best;
   }
-  const double in_step = kTwoPi * q.chatter_frequency_hz / q.teeth;  // k = 1
-  const int last = static_cast<int>(std::floor(in_step / q.limits.min_speed));
-  bool out_of_range = false;
-  for (int k = 1; k <= last; ++k) {
+  const int first = std::max(1, static_cast<int>(std::ceil(in_step / q.limits.max_speed)));
+  const int last = std::min(static_cast<int>(highest_lobe), first + kMostLobes);
+  for (int k = first; k <= last; ++k) {
     const double target = in_step / k;
-    if (target > q.limits.max_speed) {
-      out_of_range = true;
-      continue;
-    }
+    if (target < q.limits.min_speed || target > q.limits.max_speed) continue;  // by the last bit
     const double move = std::abs(target - q.speed);
     if (move < kAlreadyThere * q.speed || was_tried(q, target)) continue;
     const double margin = safe_margin(q, target);
@@ -68,12 +69,15 @@ SpeedChoice choose_speed(const SpeedQuestion& q) noexcept {
     }
   }
   if (!best.found) {
-    best.limited_by = kNoStableSettingKnown | (out_of_range || last < 1 ? kLimitedBySpeedRange : 0);
+    best.limited_by = kNoStableSettingKnown | kLimitedBySpeedRange;
     return best;
   }
   // Heard and predicted agree: confident. Nothing predicted: the measured frequency alone. A prediction that says the
   // present cut is stable has just been contradicted.
-  best.confidence_percent = std::isnan(best.margin_after) ? 50 : best.margin_after <= 0.0 ? 30 : best.margin_before < 0.0 ? 80 : 50;
+  best.confidence_percent = std::isnan(best.margin_after) ? 50
+                            : best.margin_after <= 0.0    ? 30
+                            : best.margin_before < 0.0    ? 80
+                                                          : 50;
   return best;
 }
 

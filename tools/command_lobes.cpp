@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "drivers/files/cell.hpp"
@@ -25,10 +26,14 @@ constexpr int kDefaultCount = 201;
 struct LobesOptions {
   std::string cell, posture, speed, csv, plot;
   std::optional<double> feed_direction_deg;
-  LobeMethod method = LobeMethod::floquet;
+  std::string method = "sdm";
   double max_depth_mm = 20.0;
   bool json = false;
 };
+
+LobeMethod method_of(const LobesOptions& options) {
+  return options.method == "zoa" ? LobeMethod::zeroth_order : LobeMethod::floquet;
+}
 
 struct Lobes {
   PredictedPosture predicted;
@@ -64,7 +69,8 @@ std::vector<double> speeds_of(const Cell& cell, const LobesOptions& options) {
 PredictedPosture predict(const Cell& cell, const LobesOptions& options) {
   const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
   const DynamicsMap map = read_dynamics_map(dynamics.map);
-  const std::string& asked = options.posture.empty() ? dynamics.posture : options.posture;
+  std::string asked = options.posture.empty() ? dynamics.posture : options.posture;
+  if (asked.empty() && map.postures.size() == 1) asked = map.postures.front().id;
   if (asked.empty()) {
     throw InputError(options.cell, 0, "dynamics.posture: is missing; set it, or name a posture with --posture");
   }
@@ -96,7 +102,7 @@ Lobes compute(const LobesOptions& options) {
   Progress progress("lobes");
   try {
     lobes.limits = depth_limits(tool, material, lobes.cut, lobes.predicted.posture.modes, lobes.speeds,
-                                {.method = options.method, .max_depth = options.max_depth_mm * 1e-3},
+                                {.method = method_of(options), .max_depth = options.max_depth_mm * 1e-3},
                                 [&](double share) { progress.update(share); });
   } catch (const std::invalid_argument& error) {
     throw InputError(options.cell, 0, error.what());
@@ -154,10 +160,10 @@ nlohmann::ordered_json to_json(const Lobes& lobes, const LobesOptions& options) 
   return {{"posture", predicted.posture.id},
           {"nearest_posture", predicted.nearest},
           {"outside_map", predicted.outside},
-          {"method", options.method == LobeMethod::floquet ? "sdm" : "zoa"},
+          {"method", options.method},
           {"feed_direction_deg", rad_to_deg(lobes.cut.feed_direction)},
           {"max_depth_mm", options.max_depth_mm},
-          {"relative_error_estimate", options.method == LobeMethod::floquet ? nlohmann::json(error) : nullptr},
+          {"relative_error_estimate", method_of(options) == LobeMethod::floquet ? nlohmann::json(error) : nullptr},
           {"modes", modes},
           {"points", points}};
 }
@@ -186,7 +192,7 @@ void run(const LobesOptions& options) {
     const double direction = rad_to_deg(lobes.cut.feed_direction);
     LobePicture picture{.title = "Stability lobes, posture " + lobes.predicted.posture.id,
                         .subtitle = "feed direction " + csv_number(std::round(direction * 100.0) / 100.0) + "°, " +
-                                    (options.method == LobeMethod::floquet ? "Floquet" : "zeroth order"),
+                                    (method_of(options) == LobeMethod::floquet ? "Floquet" : "zeroth order"),
                         .speeds = lobes.speeds,
                         .limits = lobes.limits,
                         .max_depth = options.max_depth_mm * 1e-3,
@@ -212,15 +218,13 @@ void add_lobes_command(CLI::App& app) {
                       "(default: the cell's)");
   command->add_option("--feed-direction", options->feed_direction_deg,
                       "Degrees from +X toward +Y (default: the cell's)");
-  command
-      ->add_option("--method", options->method,
-                   "sdm: converged Floquet solution; zoa: zeroth order, a fast first look (default: sdm)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, LobeMethod>{{"sdm", LobeMethod::floquet}, {"zoa", LobeMethod::zeroth_order}}));
+  command->add_option("--method", options->method, "sdm: converged Floquet solution; zoa: zeroth order, a first look")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"sdm", "zoa"}));
   command->add_option("--speed", options->speed, "MIN:MAX:COUNT in rpm (default: 201 over the spindle's range)");
   command->add_option("--max-depth", options->max_depth_mm, "Largest depth to look at, mm")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e4).description(""));
   command->add_option("--csv", options->csv, "Write the diagram; - is standard output (so without any output option)");
   command->add_option("--plot", options->plot, "Draw the diagram to a .svg or .png file");
   command->add_flag("--json", options->json, "One JSON object on standard output");

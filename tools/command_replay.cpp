@@ -1,4 +1,5 @@
-// `stillcut replay`: plays a CAN log through the daemon's own code, as fast as it goes, and writes down what was decided.
+// `stillcut replay`: plays a CAN log through the daemon's own code, as fast as it goes, and writes down what was
+// decided.
 #include <chrono>
 #include <deque>
 #include <fstream>
@@ -45,19 +46,22 @@ class RobotMessages {
   // Hands over all whose time has come, each with the lobes of its posture.
   void feed_until(std::int64_t stamp_ns, Core& core) {
     while (!waiting_.empty() && std::visit([](const auto& m) { return m.stamp_ns; }, waiting_.front()) <= stamp_ns) {
-      if (const auto* state = std::get_if<RobotState>(&waiting_.front())) {
+      const RobotMessage message = waiting_.front();
+      waiting_.pop_front();
+      if (const auto* state = std::get_if<RobotState>(&message)) {
         core.add_robot_state(*state);
+        if (!pace_.due(*state)) continue;
         if (const auto diagram = predictor_.at(*state)) core.add_lobes(*diagram);
       } else {
-        core.add_ack(std::get<CorrectionAck>(waiting_.front()));
+        core.add_ack(std::get<CorrectionAck>(message));
       }
-      waiting_.pop_front();
     }
   }
   [[nodiscard]] std::int64_t bad() const { return bad_; }
 
  private:
   Predictor& predictor_;
+  PredictionPace pace_;
   std::deque<RobotMessage> waiting_;
   std::int64_t bad_ = 0;
 };
@@ -69,15 +73,18 @@ std::ofstream open_for_writing(const std::string& file) {
 }
 
 void replay(const ReplayOptions& options) {
+  if (options.json && options.events == "-") {
+    throw CLI::ValidationError("--events", "'-' and --json both want standard output; name a file for the events");
+  }
   const Cell cell = read_cell(options.cell, {.bus = false});
   Pipeline pipeline{cell};
   Core& core = pipeline.core();
   Predictor predictor{cell};
-  core.add_lobes(predictor.nominal());
   CandumpReader log{options.can};
   RobotMessages robot{options.lcm, options.lcm_offset_s, predictor};
   std::optional<Publisher> publisher;
   if (!options.publish.empty()) publisher.emplace(open_lcm(options.publish));
+  core.add_lobes(predictor.nominal());
 
   std::ofstream events_file;
   const bool events_to_stdout = options.events == "-";
@@ -90,7 +97,9 @@ void replay(const ReplayOptions& options) {
   if (!options.plot.empty()) trace.emplace(cell);
   EventTally tally;
   Progress progress{"replaying"};
-  const double size = static_cast<double>(std::max<std::uintmax_t>(1, std::filesystem::file_size(options.can)));
+  std::error_code no_size;  // a pipe has none
+  const double size =
+      static_cast<double>(std::max<std::uintmax_t>(1, std::filesystem::file_size(options.can, no_size)));
   constexpr double kBytesAFrame = 150.0;  // about; for the bar only
   std::int64_t last_ns = 0;
   const auto started = std::chrono::steady_clock::now();
@@ -113,6 +122,9 @@ void replay(const ReplayOptions& options) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double signal_s = static_cast<double>(last_ns - core.origin_ns()) * 1e-9;
 
+  if (!options.events.empty() && !events.flush()) {
+    throw InputError(options.events, 0, "cannot be written to its end; is the disk full?");
+  }
   if (const std::string warning = log.warning(); !warning.empty()) std::cerr << "stillcut: " << warning << '\n';
   if (robot.bad() > 0) std::cerr << "stillcut: " << options.lcm << ": " << robot.bad() << " bad messages passed over\n";
   if (trace) plot_replay(trace->finish(), options.plot);
@@ -129,21 +141,23 @@ void replay(const ReplayOptions& options) {
                                             {"faults", tally.faults}};
     std::cout << summary.dump() << '\n';
   } else if (tell) {
-    std::cout << signal_s << " s of signal in " << wall_s << " s (" << std::llround(signal_s / wall_s) << " x real time), "
-              << log.frames() << " frames, " << core.counters().frames_lost << " lost, " << bad << " bad; "
-              << tally.chatter_onsets << " chatter onsets, " << tally.corrections << " corrections\n";
+    std::cout << signal_s << " s of signal in " << wall_s << " s (" << std::llround(signal_s / wall_s)
+              << " x real time), " << log.frames() << " frames, " << core.counters().frames_lost << " lost, " << bad
+              << " bad; " << tally.chatter_onsets << " chatter onsets, " << tally.corrections << " corrections\n";
   }
 }
 
 }  // namespace
 
 void add_replay_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("replay", "Play a CAN log through the daemon's own code and list what it decides");
+  CLI::App* command =
+      app.add_subcommand("replay", "Play a CAN log through the daemon's own code and list what it decides");
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("CELL", options->cell, "cell file")->required();
   command->add_option("--can", options->can, "CAN log as 'candump -L' writes it")->required();
   command->add_option("--lcm", options->lcm, "LCM log as lcm-logger writes it: robot states and acknowledgements");
-  command->add_option("--lcm-offset", options->lcm_offset_s, "seconds to add to the LCM log's times")->capture_default_str();
+  command->add_option("--lcm-offset", options->lcm_offset_s, "seconds to add to the LCM log's times")
+      ->capture_default_str();
   command->add_option("--events", options->events, "write the events as CSV ('-': standard output)");
   command->add_option("--plot", options->plot, "draw vibration, spectrogram, indicator and speed (.svg or .png)");
   command->add_option("--publish", options->publish, "publish on LCM as the daemon would, e.g. memq:// or udpm://...");

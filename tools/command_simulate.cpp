@@ -22,8 +22,9 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kLogOrigin =
-    1'700'000'000'000'000'000;        // ns: logs carry dates; a fixed one keeps them repeatable
-constexpr double kRateGrain = 100.0;  // Hz: rates of rows are whole hundreds
+    1'700'000'000'000'000'000;                    // ns: logs carry dates; a fixed one keeps them repeatable
+constexpr double kRateGrain = 1000.0;             // Hz: rates of rows are round, and a little above the lowest
+constexpr std::int64_t kMaxPlotRows = 4'000'000;  // bounds the memory that a picture takes
 
 struct SimulateOptions {
   std::string cell, posture, depth, speed, csv, can, plot;
@@ -84,11 +85,14 @@ MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
 
 // Rows are dense enough for the modes, and for the sensors where there are any to feed.
 double row_rate_hz(const Cell& cell, const MillingSetup& setup, const SimulateOptions& options) {
+  const double lowest = lowest_sample_rate_hz(setup.modes);
+  if (options.rate_hz > 0.0 && options.rate_hz < lowest)
+    throw CLI::ValidationError("--rate", "the highest mode needs at least " + csv_number(std::ceil(lowest)) + " Hz");
   if (options.rate_hz > 0.0) return options.rate_hz;
-  double rate = lowest_sample_rate_hz(setup.modes);
+  double rate = (std::floor(lowest / kRateGrain) + 1.0) * kRateGrain;
   if (!options.can.empty() && cell.can)
     for (const AccelerometerSettings& sensor : cell.can->accelerometers) rate = std::max(rate, sensor.sample_rate_hz);
-  return std::ceil(rate / kRateGrain - 1e-9) * kRateGrain;
+  return rate;
 }
 
 // A text file, or standard output for "-"; says so when it cannot be written to the end.
@@ -117,7 +121,7 @@ class CsvOutput {
   void write(const MillingState& s) {
     std::array<char, 256> row{};
     const int length =
-        std::snprintf(row.data(), row.size(), "%.9g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.9g\n", s.time, s.force.x(),
+        std::snprintf(row.data(), row.size(), "%.12g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.9g\n", s.time, s.force.x(),
                       s.force.y(), s.force.z(), s.displacement.x() * 1e6, s.displacement.y() * 1e6,
                       s.displacement.z() * 1e6, s.chip * 1e6, rad_s_to_rpm(s.spindle_speed));
     file_.stream().write(row.data(), length);
@@ -165,43 +169,16 @@ struct Peaks {
   }
 };
 
-void simulate(const SimulateOptions& options) {
-  if (options.json && options.csv == "-")
-    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
-  const bool needs_can = !options.can.empty();
-  const Cell cell = read_cell(options.cell, {.dbc = needs_can, .bus = false});
-  const MillingSetup setup = setup_of(cell, options);
-  const double rate_hz = row_rate_hz(cell, setup, options);
-  std::optional<MillingSimulation> milling;
+MillingSimulation simulation_of(const Cell& cell, const MillingSetup& setup, double rate_hz) {
   try {
-    milling.emplace(setup, rate_hz);
+    return MillingSimulation(setup, rate_hz);
   } catch (const std::invalid_argument& error) {
-    throw InputError(options.cell, 0, error.what());
+    throw InputError(cell.file.string(), 0, error.what());
   }
-  std::optional<CsvOutput> csv;
-  std::optional<CanOutput> can;
-  if (!options.csv.empty()) csv.emplace(options.csv);
-  if (needs_can) can.emplace(options.can, cell, options);
+}
 
-  Peaks peaks;
-  std::vector<MillingState> states;
-  const auto rows = static_cast<std::int64_t>(std::floor(options.duration_s * rate_hz * (1.0 + 1e-12))) + 1;
-  {
-    Progress progress("milling");
-    for (std::int64_t i = 0; i < rows; ++i) {
-      const MillingState& state = i == 0 ? milling->state() : milling->advance();
-      if (csv) csv->write(state);
-      if (can) can->write(state);
-      if (!options.plot.empty()) states.push_back(state);
-      peaks.add(state);
-      if (i % 1024 == 0) progress.update(static_cast<double>(i) / static_cast<double>(rows));
-    }
-  }
-  if (csv) csv->finish();
-  if (can) can->finish();
-  if (!options.plot.empty())
-    plot::write_figure(simulation_figure("Simulated cut: " + setup.material.name, states), options.plot);
-
+void print_summary(const SimulateOptions& options, std::int64_t rows, double rate_hz, const Peaks& peaks,
+                   const std::optional<CanOutput>& can) {
   if (can && can->saturated() > 0)
     std::cerr << "stillcut: " << options.can << ": " << can->saturated()
               << " samples stand at the end of the sensor's range\n";
@@ -215,10 +192,46 @@ void simulate(const SimulateOptions& options) {
                                    {"largest_chip_um", peaks.chip * 1e6}};
     if (can) summary.update({{"frames", can->frames()}, {"samples_saturated", can->saturated()}});
     std::cout << summary.dump() << '\n';
-  } else if (options.csv != "-") {
+  } else if (options.csv != "-" && options.can != "-") {
     std::printf("%g s milled: peak force %.0f N, displacement %.0f µm, acceleration %.0f m/s², chip %.0f µm\n",
                 options.duration_s, peaks.force, peaks.displacement * 1e6, peaks.acceleration, peaks.chip * 1e6);
   }
+}
+
+void simulate(const SimulateOptions& options) {
+  const int to_stdout = (options.csv == "-" ? 1 : 0) + (options.can == "-" ? 1 : 0) + (options.json ? 1 : 0);
+  if (to_stdout > 1)
+    throw CLI::ValidationError("-", "only one of --csv -, --can - and --json can have standard output");
+  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  const Cell cell = read_cell(options.cell, {.dbc = !options.can.empty(), .bus = false});
+  const MillingSetup setup = setup_of(cell, options);
+  const double rate_hz = row_rate_hz(cell, setup, options);
+  const auto rows = static_cast<std::int64_t>(std::floor(options.duration_s * rate_hz * (1.0 + 1e-12))) + 1;
+  if (!options.plot.empty() && rows > kMaxPlotRows)
+    throw CLI::ValidationError("--plot", "too long for a picture; draw a shorter --duration");
+  MillingSimulation milling = simulation_of(cell, setup, rate_hz);
+  std::optional<CsvOutput> csv;
+  std::optional<CanOutput> can;
+  if (!options.csv.empty()) csv.emplace(options.csv);
+  if (!options.can.empty()) can.emplace(options.can, cell, options);
+
+  Peaks peaks;
+  std::vector<MillingState> states;
+  Progress progress("milling");
+  for (std::int64_t i = 0; i < rows; ++i) {
+    const MillingState& state = i == 0 ? milling.state() : milling.advance();
+    if (csv) csv->write(state);
+    if (can) can->write(state);
+    if (!options.plot.empty()) states.push_back(state);
+    peaks.add(state);
+    if (i % 1024 == 0) progress.update(static_cast<double>(i) / static_cast<double>(rows));
+  }
+  progress.finish();
+  if (csv) csv->finish();
+  if (can) can->finish();
+  if (!options.plot.empty())
+    plot::write_figure(simulation_figure("Simulated cut: " + setup.material.name, states), options.plot);
+  print_summary(options, rows, rate_hz, peaks, can);
 }
 
 }  // namespace

@@ -204,7 +204,8 @@ void wait_for_the_end(const sigset_t& signals, const std::atomic<bool>& loop_end
 }  // namespace
 
 void run_daemon(const DaemonOptions& options) {
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>("stillcutd", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("stillcutd", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   spdlog::set_pattern("%H:%M:%S.%e %l %v");
   sigset_t signals;
   sigemptyset(&signals);
@@ -225,8 +226,9 @@ void run_daemon(const DaemonOptions& options) {
   std::optional<RecorderThread> recorder;
   if (!options.record.empty()) recorder.emplace(*channels, options.record, interface_name(bus_name));
 
-  // Prediction: the newest state is for the model thread, every message for the loop.
+  // Prediction: now and then a state is for the model thread, every message for the loop.
   Snapshot<RobotState> newest_state;
+  PredictionPace pace;  // the subscriber thread's
   std::jthread model{[&](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       if (newest_state.update()) {
@@ -235,14 +237,16 @@ void run_daemon(const DaemonOptions& options) {
       std::this_thread::sleep_for(kPollModel);
     }
   }};
-  Subscriber subscriber{lcm, realtime_ns,
-                        {.on_state =
-                             [&](const RobotState& state) {
-                               (void)channels->messages.push(state);
-                               newest_state.publish(state);
-                             },
-                         .on_ack = [&](const CorrectionAck& ack) { (void)channels->messages.push(ack); },
-                         .on_bad = [](std::string_view channel, const char* why) { spdlog::warn("{}: {}", channel, why); }}};
+  Subscriber subscriber{
+      lcm,
+      realtime_ns,
+      {.on_state =
+           [&](const RobotState& state) {
+             (void)channels->messages.push(state);
+             if (pace.due(state)) newest_state.publish(state);
+           },
+       .on_ack = [&](const CorrectionAck& ack) { (void)channels->messages.push(ack); },
+       .on_bad = [](std::string_view channel, const char* why) { spdlog::warn("{}: {}", channel, why); }}};
 
   std::optional<LoopSyscallFilter> audit;
   if (options.audit) audit.emplace();
@@ -253,13 +257,16 @@ void run_daemon(const DaemonOptions& options) {
   {
     RealTimeThread loop{{.priority = options.priority, .cpu = options.cpu}, [&] {
                           if (audit && audit->install() != 0) std::abort();
-                          run_periodic(kLoopPeriodNs, stop, statistics, [&](std::int64_t) noexcept { return live.tick(); });
+                          run_periodic(kLoopPeriodNs, stop, statistics,
+                                       [&](std::int64_t) noexcept { return live.tick(); });
                           if (audit) audit->release();
                           ended.store(true, std::memory_order_release);
                         }};
     if (!loop.report().complete()) spdlog::warn("not fully real-time: {}", loop.report().reasons);
     spdlog::info("stillcutd runs: {} on {}, mode {}", options.cell, cell.can->bus,
-                 cell.mode == RuntimeMode::active ? "active" : cell.mode == RuntimeMode::shadow ? "shadow" : "off");
+                 cell.mode == RuntimeMode::active   ? "active"
+                 : cell.mode == RuntimeMode::shadow ? "shadow"
+                                                    : "off");
     wait_for_the_end(signals, ended, options.duration_s);
     stop.store(true, std::memory_order_release);
     loop.join();

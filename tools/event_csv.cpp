@@ -29,13 +29,20 @@ std::string fixed(double value, int decimals) {
 
 std::string_view event_name(EventType type) noexcept {
   switch (type) {
-    case EventType::cut_entry: return "cut_entry";
-    case EventType::cut_exit: return "cut_exit";
-    case EventType::chatter_onset: return "chatter_onset";
-    case EventType::chatter_end: return "chatter_end";
-    case EventType::correction: return "correction";
-    case EventType::fault: return "fault";
-    case EventType::forced_vibration: return "forced_vibration";
+    case EventType::cut_entry:
+      return "cut_entry";
+    case EventType::cut_exit:
+      return "cut_exit";
+    case EventType::chatter_onset:
+      return "chatter_onset";
+    case EventType::chatter_end:
+      return "chatter_end";
+    case EventType::correction:
+      return "correction";
+    case EventType::fault:
+      return "fault";
+    case EventType::forced_vibration:
+      return "forced_vibration";
   }
   return "";
 }
@@ -43,22 +50,24 @@ std::string_view event_name(EventType type) noexcept {
 std::string_view kind_name(const Event& event) noexcept {
   if (!about_chatter(event)) return "";
   switch (event.kind) {
-    case ChatterKind::unknown: return "unknown";
-    case ChatterKind::regenerative: return "regenerative";
-    case ChatterKind::structural: return "structural";
+    case ChatterKind::unknown:
+      return "unknown";
+    case ChatterKind::regenerative:
+      return "regenerative";
+    case ChatterKind::structural:
+      return "structural";
   }
   return "";
 }
 
-void write_event_header(std::ostream& out) { out << "time_s,event,kind,frequency_hz,indicator,spindle_speed_rpm,note\n"; }
+void write_event_header(std::ostream& out) {
+  out << "time_s,event,kind,frequency_hz,indicator,spindle_speed_rpm,note\n";
+}
 
 void write_event(std::ostream& out, const Event& event, std::int64_t origin_ns) {
-  const std::array<std::string, 7> row = {fixed(seconds(event, origin_ns), 6),
-                                          std::string(event_name(event.type)),
-                                          std::string(kind_name(event)),
-                                          fixed(event.frequency_hz, 6),
-                                          fixed(event.indicator, 6),
-                                          fixed(event.spindle_speed_rpm, 6),
+  const std::array<std::string, 7> row = {fixed(seconds(event, origin_ns), 6), std::string(event_name(event.type)),
+                                          std::string(kind_name(event)),       fixed(event.frequency_hz, 6),
+                                          fixed(event.indicator, 6),           fixed(event.spindle_speed_rpm, 6),
                                           csv_text(event.note.data())};
   write_csv_row(out, row);
 }

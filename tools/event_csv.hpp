@@ -10,7 +10,7 @@
 
 namespace stillcut {
 
-std::string_view event_name(EventType type) noexcept;   // "cut_entry", ...
+std::string_view event_name(EventType type) noexcept;     // "cut_entry", ...
 std::string_view kind_name(const Event& event) noexcept;  // empty for events that are not about chatter
 
 // time_s,event,kind,frequency_hz,indicator,spindle_speed_rpm,note

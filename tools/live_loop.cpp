@@ -5,8 +5,8 @@
 namespace stillcut {
 namespace {
 
-// How far behind the clock a silent tick moves data time: a frame stamped before that has long been in the socket, so no
-// frame can still come from a time that was declared silent.
+// How far behind the clock a silent tick moves data time: a frame stamped before that has long been in the socket, so
+// no frame can still come from a time that was declared silent.
 constexpr std::int64_t kBehindClock_ns = 20'000'000;
 // Frames a tick takes at most, so that a flood delays one tick and not the thread for good.
 constexpr int kBatchesATick = 32;

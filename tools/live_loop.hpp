@@ -24,7 +24,7 @@ struct LoopChannels {
   Snapshot<LobeDiagram> lobes;
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
-  Ring<CanFrame> recorded{32768};  // ten seconds of a triaxial 25.6 kHz sensor
+  Ring<CanFrame> recorded{32768};          // ten seconds of a triaxial 25.6 kHz sensor
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
 };
 

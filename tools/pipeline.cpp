@@ -1,6 +1,11 @@
 #include "tools/pipeline.hpp"
 
 namespace stillcut {
+namespace {
+
+constexpr double kLowestSampleRate_hz = 500.0;  // of the monitor
+
+}  // namespace
 
 CoreSettings core_settings(const Cell& cell) {
   const Tool& tool = require(cell, cell.tool, "tool");
@@ -9,9 +14,16 @@ CoreSettings core_settings(const Cell& cell) {
   const CanSettings& can = require(cell, cell.can, "can");
 
   CoreSettings settings;
+  if (can.accelerometers.empty()) {
+    throw InputError(cell.file.string(), can.line, "can.accelerometer: is missing; add a [[can.accelerometer]] table");
+  }
   for (const AccelerometerSettings& accelerometer : can.accelerometers) {
     std::uint8_t axes = 0;
     for (int a = 0; a < kMaxAxes; ++a) axes |= accelerometer.axis[a].empty() ? 0 : 1U << a;
+    if (accelerometer.sample_rate_hz < kLowestSampleRate_hz) {
+      throw InputError(cell.file.string(), accelerometer.line,
+                       "can.accelerometer.sample_rate_hz: is too low to hear chatter; needs 500 or more");
+    }
     settings.monitor.sensors.push_back({accelerometer.sample_rate_hz, axes});
   }
   settings.monitor.highest_speed = spindle.max_speed;

@@ -1,5 +1,5 @@
-// From a frame to a decision: the decoder and the core put together for one cell. The daemon's loop and playback both drive
-// exactly this, so that what is tuned on recordings is what runs on the machine.
+// From a frame to a decision: the decoder and the core put together for one cell. The daemon's loop and playback both
+// drive exactly this, so that what is tuned on recordings is what runs on the machine.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ class Pipeline {
   // Reads the cell's DBC. Throws InputError.
   explicit Pipeline(const Cell& cell);
 
-  // One frame of the bus, in the order of arrival. Real-time: no allocation, no lock, no system call. True when the frame
-  // brought samples or speed (see decoded()).
+  // One frame of the bus, in the order of arrival. Real-time: no allocation, no lock, no system call. True when the
+  // frame brought samples or speed (see decoded()).
   bool feed(const CanFrame& frame) noexcept;
 
   [[nodiscard]] Core& core() noexcept { return core_; }

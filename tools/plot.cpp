@@ -146,7 +146,8 @@ void draw_data(Canvas& canvas, const View& view, const Panel& panel) {
         canvas.disc(view.px(points.x[i]), view.py(points.y[i]), points.size, points.color);
   for (const Limit& limit : panel.limits) {
     canvas.segment(view.box.left, view.py(limit.y), view.box.right, view.py(limit.y), limit.color, 1.3, true);
-    canvas.text(view.box.left + 8, view.py(limit.y) - 5, limit.text,
+    const double above = view.py(limit.y) - view.box.top > 18.0 ? -5.0 : 15.0;  // or below it at the panel's upper edge
+    canvas.text(view.box.left + 8, view.py(limit.y) + above, limit.text,
                 {.size = kSmall, .color = limit.color, .halo = true});
   }
   for (const EventMark& event : panel.events)

@@ -1,5 +1,6 @@
 // Pictures of cuts: charts stacked in panels over one axis, drawn by cairo to .svg or .png. A figure is a plain value
-// that says what is to be seen; write_figure lays it out and draws it. The same figure gives the same file.
+// that says what is to be seen; write_figure lays it out and draws it. A command that draws the same figure writes the
+// same bytes.
 #pragma once
 
 #include <filesystem>
@@ -94,6 +95,9 @@ struct Figure {
   std::vector<Panel> panels;
   int width = 1200, height = 900;  // px; a .png has 1.5 times as many
 };
+
+// Throws InputError unless the name ends in .svg or .png: for a command to call before its long work.
+void check_picture_name(const std::filesystem::path& file);
 
 // Draws to `file`, .svg or .png by its name. Throws InputError for another name or a file that cannot be written.
 void write_figure(const Figure& figure, const std::filesystem::path& file);

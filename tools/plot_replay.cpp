@@ -35,10 +35,10 @@ std::vector<Band> stretches(const ReplayTrace& replay, Wanted wanted, plot::Colo
   std::vector<Band> bands;
   bool open = false;
   for (const TracePoint& point : replay.trace) {
+    if (open) bands.back().end = point.time_s;
     if (wanted(point.state) && !open)
       bands.push_back({point.time_s, point.time_s, color, opacity, bands.empty() ? label : ""});
     open = wanted(point.state);
-    if (open || (!bands.empty() && bands.back().end == bands.back().begin)) bands.back().end = point.time_s;
   }
   return bands;
 }
@@ -123,14 +123,14 @@ Panel spectrogram_panel(const ReplayTrace& replay) {
   return panel;
 }
 
-const char* kind_name(ChatterKind kind) {
+const char* chatter_name(ChatterKind kind) {
   switch (kind) {
     case ChatterKind::regenerative:
-      return "regenerative";
+      return "regenerative chatter";
     case ChatterKind::structural:
-      return "structural";
+      return "structural chatter";
     default:
-      return "of unknown kind";
+      return "chatter";
   }
 }
 
@@ -140,7 +140,7 @@ std::vector<EventMark> event_marks(const ReplayTrace& replay) {
     switch (event.type) {
       case EventType::chatter_onset:
         marks.push_back({event.time_s,
-                         format("%.3f s  chatter %s, %.0f Hz", event.time_s, kind_name(event.kind), event.frequency_hz),
+                         format("%.3f s  %s, %.0f Hz", event.time_s, chatter_name(event.kind), event.frequency_hz),
                          plot::kVermilion});
         break;
       case EventType::chatter_end:
@@ -183,15 +183,19 @@ Panel indicator_panel(const ReplayTrace& replay) {
   return panel;
 }
 
-// "correction: 9000 → 7490 rpm, n = 60 f/(N k), f = 749 Hz, N = 2, k = 3"
-std::string correction_text(const ReplayTrace& replay, const ReplayEvent& event) {
-  double before = kNaN;
-  for (const TracePoint& point : replay.trace)
-    if (point.time_s <= event.time_s) before = point.spindle_speed_rpm;
-  std::string text = format("correction: %.0f → %.0f rpm", before, event.spindle_speed_rpm);
-  const double lobe = 60.0 * event.frequency_hz / (replay.teeth * event.spindle_speed_rpm);
-  const double k = std::round(lobe);
-  if (k >= 1.0 && std::abs(lobe - k) < 0.02 * k)
+double speed_at(const ReplayTrace& replay, double time_s) {
+  const auto later = std::upper_bound(replay.trace.begin(), replay.trace.end(), time_s,
+                                      [](double time, const TracePoint& point) { return time < point.time_s; });
+  return later == replay.trace.begin() ? kNaN : std::prev(later)->spindle_speed_rpm;
+}
+
+// "correction: 9000 → 7490 rpm,  n = 60 f/(N k)  with f = 749 Hz, N = 2, k = 3"; once told, the numbers alone.
+std::string correction_text(const ReplayTrace& replay, const ReplayEvent& event, bool in_full) {
+  const double lobe = 60.0 * event.frequency_hz / (replay.teeth * event.spindle_speed_rpm), k = std::round(lobe);
+  const bool on_lobe = k >= 1.0 && std::abs(lobe - k) < 0.02 * k;
+  if (!in_full) return format("→ %.0f", event.spindle_speed_rpm) + (on_lobe ? format(", k = %.0f", k) : "");
+  std::string text = format("correction: %.0f → %.0f rpm", speed_at(replay, event.time_s), event.spindle_speed_rpm);
+  if (on_lobe)
     text += format(",  n = 60 f/(N k)  with f = %.0f Hz, N = %d, k = %.0f", event.frequency_hz, replay.teeth, k);
   return text;
 }
@@ -219,7 +223,7 @@ Panel speed_panel(const ReplayTrace& replay) {
     if (event.type != EventType::correction || !(event.spindle_speed_rpm > 0.0)) continue;
     target.x.push_back(event.time_s);
     target.y.push_back(event.spindle_speed_rpm);
-    panel.events.push_back({event.time_s, correction_text(replay, event), {0.62, 0.40, 0.0}});
+    panel.events.push_back({event.time_s, correction_text(replay, event, panel.events.empty()), {0.62, 0.40, 0.0}});
     low = std::fmin(low, event.spindle_speed_rpm), high = std::fmax(high, event.spindle_speed_rpm);
   }
   if (!target.x.empty() && std::isfinite(target.y.back())) {
@@ -229,7 +233,7 @@ Panel speed_panel(const ReplayTrace& replay) {
   const double room = std::max(0.25 * (high - low), 0.04 * high);  // the difference is to be seen, not the whole range
   if (std::isfinite(room)) {
     panel.y.min = low - room;
-    panel.y.max = high + 2.0 * room;  // for the texts
+    panel.y.max = high + 3.0 * room;  // for the texts
   }
   for (const double limit : {replay.min_speed_rpm, replay.max_speed_rpm})
     if (limit > panel.y.min && limit < panel.y.max)

@@ -10,8 +10,10 @@
 namespace stillcut {
 namespace {
 
-// From a robot state's stamp to the first use of its diagram: more than the computation takes on the smallest machine.
-constexpr std::int64_t kUsableAfter_ns = 500'000'000;
+// From a robot state's stamp to the first use of its diagram: more than the computation takes, so that live run and
+// playback agree on when a diagram came into use.
+constexpr std::int64_t kUsableAfter_ns = 2'000'000'000;
+constexpr int kPoints = 61;  // of a diagram: what the model thread computes within that time
 // A posture that has moved less than this since the last computation has the same lobes.
 constexpr double kSameAngle = 0.005;    // rad
 constexpr double kSameLength = 0.0005;  // m
@@ -73,7 +75,8 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
 
 LobeDiagram Predictor::compute(const Posture& posture, const Cut& cut) const {
   const PredictedPosture predicted = predict_posture(map_, posture, interpolation_);
-  LobeDiagram diagram = compute_lobe_diagram(tool_, material_, cut, spindle_, predicted.posture.modes);
+  LobeDiagram diagram =
+      compute_lobe_diagram(tool_, material_, cut, spindle_, predicted.posture.modes, {.points = kPoints});
   if (predicted.outside) diagram.valid = false;  // far from every tap test: say nothing rather than extrapolate
   return diagram;
 }

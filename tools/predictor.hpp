@@ -2,8 +2,10 @@
 // milliseconds to seconds. Playback calls it in place, the daemon on its model thread.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "drivers/files/cell.hpp"
 #include "models/dynamics_map.hpp"
@@ -13,6 +15,19 @@
 
 namespace stillcut {
 
+// Which robot states get a diagram: the first of every second by their stamps. So playback computes the same ones as
+// the live run, and the computation keeps up with a robot that moves.
+class PredictionPace {
+ public:
+  bool due(const RobotState& state) noexcept {
+    const std::int64_t second = state.stamp_ns / 1'000'000'000;
+    return second != std::exchange(last_second_, second);
+  }
+
+ private:
+  std::int64_t last_second_ = -1;
+};
+
 class Predictor {
  public:
   // Reads the cell's dynamics map and finds its posture. Throws InputError.
@@ -21,9 +36,9 @@ class Predictor {
   // For the cell file's posture and cut. Throws InputError for a cut that the lobes cannot describe.
   [[nodiscard]] LobeDiagram nominal() const;
 
-  // For a robot state: posture, feed direction and immersion as the robot reports them, the cell's where it does not. The
-  // diagram is usable from a fixed time after the state's stamp, so that live run and playback take it up at the same
-  // frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
+  // For a robot state: posture, feed direction and immersion as the robot reports them, the cell's where it does not.
+  // The diagram is usable from a fixed time after the state's stamp, so that live run and playback take it up at the
+  // same frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
   [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
 
  private:

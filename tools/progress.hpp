@@ -13,11 +13,15 @@ namespace stillcut {
 class Progress {
  public:
   explicit Progress(std::string task) : task_{std::move(task)}, terminal_{isatty(STDERR_FILENO) == 1} {}
-  ~Progress() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
+  ~Progress() { finish(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+
+  // Takes the bar away, so that results stand on a clean line.
+  void finish() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+    shown_ = false;
+  }
 
   // `share`: how much is done, 0..1. May be called as often as one likes: it draws ten times a second at most.
   void update(double share) {

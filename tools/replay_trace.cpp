@@ -1,5 +1,6 @@
 #include "tools/replay_trace.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,17 +25,19 @@ void TraceCollector::add(const Pipeline& pipeline) {
     if (axis_[0].empty() && axis_[1].empty() && axis_[2].empty()) trace_.start_s = first_s;
     for (int a = 0; a < kMaxAxes; ++a) {
       if ((block.axes_present >> a & 1U) == 0) continue;
-      // Lost frames are shown as gaps, in their place.
-      const std::size_t lost = std::size_t{block.frames_lost} * block.samples;
-      axis_[a].insert(axis_[a].end(), std::min<std::size_t>(lost, 1U << 24), std::numeric_limits<float>::quiet_NaN());
+      // Lost frames are shown as gaps, in their place; a counter that tells of more than fit the time is not believed.
+      const double until_here = std::max(0.0, (first_s - trace_.start_s) * trace_.sample_rate_hz + 1.0);
+      const double lost = std::min(static_cast<double>(std::int64_t{block.frames_lost} * block.samples),
+                                   std::max(0.0, until_here - static_cast<double>(axis_[a].size())));
+      axis_[a].insert(axis_[a].end(), static_cast<std::size_t>(lost), std::numeric_limits<float>::quiet_NaN());
       axis_[a].insert(axis_[a].end(), block.acceleration[a].begin(), block.acceleration[a].begin() + block.samples);
     }
   }
   const MonitorView& view = pipeline.core().view();
   if (view.stamp_ns == last_view_ns_) return;
   last_view_ns_ = view.stamp_ns;
-  trace_.trace.push_back({static_cast<double>(view.stamp_ns - origin_ns) * 1e-9, view.indicator, rad_s_to_rpm(view.speed),
-                          view.state, view.chatter_frequency_hz});
+  trace_.trace.push_back({static_cast<double>(view.stamp_ns - origin_ns) * 1e-9, view.indicator,
+                          rad_s_to_rpm(view.speed), view.state, view.chatter_frequency_hz});
 }
 
 void TraceCollector::add(const Event& event, std::int64_t origin_ns) {

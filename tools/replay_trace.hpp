@@ -1,4 +1,5 @@
-// Gathers during a playback what its picture shows: the strongest axis of the first accelerometer and the monitor's view.
+// Gathers during a playback what its picture shows: the strongest axis of the first accelerometer and the monitor's
+// view.
 #pragma once
 
 #include "drivers/files/cell.hpp"

@@ -14,7 +14,9 @@ namespace stillcut {
 plot::Image spectrogram(std::span<const float> signal, double sample_rate_hz, double start_s, double window_s,
                         double highest_hz, int max_columns) {
   constexpr double kShownDb = 60.0;
-  const std::size_t length = std::bit_floor(static_cast<std::size_t>(std::max(64.0, window_s * sample_rate_hz)));
+  // The power of two nearest to the window asked for.
+  const std::size_t length =
+      std::bit_floor(static_cast<std::size_t>(std::max(64.0, std::numbers::sqrt2 * window_s * sample_rate_hz)));
   plot::Image image;
   image.scale_label = "dB re 1 m/s²";
   if (signal.size() < length || max_columns < 1) return image;
@@ -42,7 +44,7 @@ plot::Image spectrogram(std::span<const float> signal, double sample_rate_hz, do
       const double level =
           20.0 * std::log10(static_cast<double>(std::abs(spectrum[static_cast<std::size_t>(row)])) + 1e-10);
       image.values[static_cast<std::size_t>(row * image.columns + column)] = static_cast<float>(level);
-      if (row > 1) strongest = std::max(strongest, level);  // not the sensor's offset
+      if (row > 4) strongest = std::max(strongest, level);  // not the sensor's offset and drift
     }
   }
   image.high = std::ceil(strongest / 10.0) * 10.0;

@@ -66,12 +66,15 @@ class SocketCanBus final : public CanBus {
   std::size_t receive(std::span<CanFrame> frames) noexcept override {
     take_new_descriptor();
     std::size_t n = 0;
+    bool told_down = false;
     while (n < frames.size()) {
       const std::span<CanFrame> room = frames.subspan(n);
       const CanBatch::Result result = batch_.receive(descriptor_, room);
       if (result.received == 0) {
         note_error(result.error);
-        break;
+        // "Down" comes once and ahead of the frames, also when the interface is up again by now.
+        if (result.error != ENETDOWN || std::exchange(told_down, true)) break;
+        continue;
       }
       for (std::size_t i = 0; i < result.frames; ++i) counted_.delivered(room[i]);
       counted_.dropped.add(result.dropped);

@@ -54,15 +54,9 @@ const char* parse_identifier(const char* p, const char* end, std::uint32_t& id) 
     value = value << 4 | digit;
   }
   if (p == end || *p++ != '#') return nullptr;
-  if (digits == 3 && value <= 0x7FF) {
-    id = value;
-  } else if (digits == 8 && value <= 0x1FFFFFFF) {
-    id = value | CanFrame::kExtended;
-  } else if (digits == 8 && value <= 0x3FFFFFFF) {
-    id = value;  // an error frame: the bit 0x20000000 is CanFrame::kError itself
-  } else {
-    return nullptr;
-  }
+  if (value > (digits == 3 ? 0x7FFU : 0x3FFFFFFFU) || (digits != 3 && digits != 8)) return nullptr;
+  id = value;  // in an error frame the bit 0x20000000 is CanFrame::kError itself
+  if (digits == 8 && (value & CanFrame::kError) == 0) id |= CanFrame::kExtended;
   return p;
 }
 

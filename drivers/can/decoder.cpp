@@ -40,10 +40,8 @@ std::uint64_t at_range_end(const SignalPlan& signal, double value) noexcept {
   return value <= signal.low || value >= signal.high ? 1 : 0;
 }
 
-using Samples = std::array<double, kMaxSamplesPerBlock>;
-
 // Fills values in m/s^2 and returns the full-scale bits.
-std::uint64_t decode_axis(const AxisPlan& axis, double unit, const std::uint8_t* data, Samples& values) noexcept {
+std::uint64_t decode_axis(const AxisPlan& axis, double unit, const std::uint8_t* data, AxisValues& values) noexcept {
   const std::size_t n = axis.samples.size();
   std::uint64_t full_scale = 0;
   if (axis.regular) {
@@ -68,9 +66,9 @@ std::uint64_t decode_axis(const AxisPlan& axis, double unit, const std::uint8_t*
 
 // One tool axis from the sensor axes that contribute to it. Those that do not are left out of the sum: 0 * NaN is not
 // 0.
-void rotate_axis(const SensorPlan& sensor, std::size_t tool, const std::array<Samples, kMaxAxes>& values,
+void rotate_axis(const SensorPlan& sensor, std::size_t tool, const std::array<AxisValues, kMaxAxes>& values,
                  const std::array<std::uint64_t, kMaxAxes>& full_scale, SampleBlock& block) noexcept {
-  Samples sum;
+  AxisValues sum;
   std::fill_n(sum.begin(), sensor.samples, 0.0);
   block.full_scale[tool] = 0;
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
@@ -126,22 +124,21 @@ bool Decoder::decode_sensor(const SensorPlan& sensor, Sequence& sequence, const 
   block.sensor = sensor.sensor;
   block.axes_present = sensor.axes_present;
   block.samples = static_cast<std::uint8_t>(sensor.samples);
-  std::array<Samples, kMaxAxes> values;
   std::array<std::uint64_t, kMaxAxes> full_scale{};
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
     if (sensor.axis[axis].samples.empty()) continue;
-    full_scale[axis] = decode_axis(sensor.axis[axis], sensor.unit_m_per_s2, frame.data.data(), values[axis]);
+    full_scale[axis] = decode_axis(sensor.axis[axis], sensor.unit_m_per_s2, frame.data.data(), values_[axis]);
   }
   for (std::size_t tool = 0; tool < kMaxAxes; ++tool) {
     block.full_scale[tool] = 0;
     if ((sensor.axes_present >> tool & 1U) == 0) continue;
     if (sensor.rotated) {
-      rotate_axis(sensor, tool, values, full_scale, block);
+      rotate_axis(sensor, tool, values_, full_scale, block);
       continue;
     }
     block.full_scale[tool] = full_scale[tool];
     for (std::size_t i = 0; i < static_cast<std::size_t>(sensor.samples); ++i) {
-      block.acceleration[tool][i] = static_cast<float>(values[tool][i]);
+      block.acceleration[tool][i] = static_cast<float>(values_[tool][i]);
     }
   }
   ++decoded.blocks;

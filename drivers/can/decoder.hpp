@@ -14,6 +14,8 @@
 
 namespace stillcut {
 
+using AxisValues = std::array<double, kMaxSamplesPerBlock>;  // m/s^2, oldest first
+
 // What one frame held. Usually one block or one reading; a frame may carry several sensors, and the speed too.
 struct Decoded {
   int blocks = 0;          // how many of `block` were filled, in the order of the cell's [[can.accelerometer]] tables
@@ -62,6 +64,7 @@ class Decoder {
 
   DecodePlan plan_;
   std::array<Sequence, kMaxSensors> sequence_{};
+  std::array<AxisValues, kMaxAxes> values_{};  // sensor axes of the frame at hand
   DecoderCounters counters_;
 };
 

@@ -70,7 +70,7 @@ class LocalRing {
     const std::uint64_t mark = slot.mark.load(std::memory_order_acquire);
     if (mark < wanted && newest - place <= kLocalPatience) return Read::nothing;
     if (mark == wanted) {
-      std::array<std::uint64_t, kWords> words;
+      std::array<std::uint64_t, kWords> words{};
       for (std::size_t i = 0; i < kWords; ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
       if (slot.mark.load(std::memory_order_relaxed) == wanted) {
         member = static_cast<std::uint32_t>(words[0]);

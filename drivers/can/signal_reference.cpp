@@ -33,6 +33,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 template <class Items>
 std::string nearest(const std::string& wanted, const Items& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const auto& item : items) names.push_back(item.name);
   if (names.empty()) return "it has none";
   std::stable_sort(names.begin(), names.end(), [&wanted](const std::string& a, const std::string& b) {
@@ -77,6 +78,13 @@ std::vector<std::string> expand(const std::string& pattern, const std::string& r
   return names;
 }
 
+[[noreturn]] void fail_without_signal(const Dbc& dbc, const DbcMessage& message, const std::string& name,
+                                      const CellKey& where) {
+  throw InputError(where.file, where.line,
+                   where.key + ": message '" + message.name + "' of " + dbc.file + " has no signal '" + name + "'; " +
+                       nearest(name, message.signals));
+}
+
 }  // namespace
 
 SignalReference find_signals(const Dbc& dbc, const std::string& reference, const CellKey& where) {
@@ -94,11 +102,7 @@ SignalReference find_signals(const Dbc& dbc, const std::string& reference, const
   }
   for (const std::string& name : expand(reference.substr(dot + 1), reference, where)) {
     found.signals.push_back(found.message->find(name));
-    if (found.signals.back() == nullptr) {
-      throw InputError(where.file, where.line,
-                       where.key + ": message '" + message_name + "' of " + dbc.file + " has no signal '" + name +
-                           "'; " + nearest(name, found.message->signals));
-    }
+    if (found.signals.back() == nullptr) fail_without_signal(dbc, *found.message, name, where);
   }
   return found;
 }

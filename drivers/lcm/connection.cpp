@@ -1,14 +1,14 @@
 #include "drivers/lcm/connection.hpp"
 
-#include <lcm/lcm-cpp.hpp>
-
 #include "drivers/files/input_error.hpp"
 
 namespace stillcut {
 
 LcmConnection open_lcm(const std::string& url) {
-  auto connection = std::make_shared<lcm::LCM>(url);
-  if (!connection->good()) {
+  LcmConnection connection(lcm_create(url.c_str()), [](lcm_t* lcm) {
+    if (lcm != nullptr) lcm_destroy(lcm);
+  });
+  if (!connection) {
     throw ComponentError(
         "LCM cannot be reached at " + url +
         "; check the address, and where no network carries multicast run: ip link set lo multicast on; "

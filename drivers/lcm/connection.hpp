@@ -2,16 +2,14 @@
 // (memq://) they must, as messages do not leave it.
 #pragma once
 
+#include <lcm/lcm.h>
+
 #include <memory>
 #include <string>
 
-namespace lcm {
-class LCM;
-}
-
 namespace stillcut {
 
-using LcmConnection = std::shared_ptr<lcm::LCM>;
+using LcmConnection = std::shared_ptr<lcm_t>;
 
 // Opens "udpm://GROUP:PORT?ttl=N" (other processes and hosts) or "memq://" (within the process). Throws ComponentError,
 // with the commands that mend it, when there is no way to the multicast group. LCM starts a thread of its own, which

@@ -14,9 +14,9 @@
 
 namespace stillcut {
 
-inline constexpr std::string_view kRobotStateChannel = "ROBOT_STATE", kRobotAckChannel = "ROBOT_ACK",
-                                  kCorrectionChannel = "STILLCUT_CORRECTION", kEventChannel = "STILLCUT_EVENT",
-                                  kStatusChannel = "STILLCUT_STATUS";
+inline constexpr const char *kRobotStateChannel = "ROBOT_STATE", *kRobotAckChannel = "ROBOT_ACK",
+                            *kCorrectionChannel = "STILLCUT_CORRECTION", *kEventChannel = "STILLCUT_EVENT",
+                            *kStatusChannel = "STILLCUT_STATUS";
 
 using MessageBytes = std::vector<std::uint8_t>;
 

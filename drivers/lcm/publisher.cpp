@@ -1,8 +1,5 @@
 #include "drivers/lcm/publisher.hpp"
 
-#include <lcm/lcm-cpp.hpp>
-#include <string>
-
 namespace stillcut {
 
 bool Publisher::publish(const Output& output) {
@@ -23,9 +20,9 @@ bool Publisher::publish(const CorrectionAck& ack, std::string_view reason) {
   return send(kRobotAckChannel, encode(ack, reason));
 }
 
-bool Publisher::send(std::string_view channel, const MessageBytes& bytes) {
-  const bool ok =
-      connection_->publish(std::string(channel), bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
+bool Publisher::send(const char* channel, const MessageBytes& bytes) {
+  const auto length = static_cast<unsigned int>(bytes.size());
+  const bool ok = lcm_publish(connection_.get(), channel, bytes.data(), length) == 0;
   (ok ? sent_ : failed_).fetch_add(1, std::memory_order_relaxed);
   return ok;
 }

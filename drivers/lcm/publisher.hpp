@@ -25,7 +25,7 @@ class Publisher {
   [[nodiscard]] std::int64_t failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
 
  private:
-  bool send(std::string_view channel, const MessageBytes& bytes);
+  bool send(const char* channel, const MessageBytes& bytes);
 
   LcmConnection connection_;
   std::atomic<std::int64_t> sent_{0};

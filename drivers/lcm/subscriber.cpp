@@ -1,7 +1,6 @@
 #include "drivers/lcm/subscriber.hpp"
 
 #include <chrono>
-#include <lcm/lcm-cpp.hpp>
 
 namespace stillcut {
 namespace {
@@ -9,7 +8,7 @@ namespace {
 constexpr int kWaitMs = 50;            // how long a wait for messages may delay the thread's end
 constexpr int kQueuedMessages = 1024;  // a channel's; LCM's own 30 lose messages in a burst
 
-std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer& buffer) {
+std::span<const std::uint8_t> bytes_of(const lcm_recv_buf_t& buffer) {
   return {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size};
 }
 
@@ -17,36 +16,40 @@ std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer& buffer) {
 
 Subscriber::Subscriber(LcmConnection connection, Clock clock, RobotHandlers handlers)
     : connection_{std::move(connection)}, clock_{std::move(clock)}, handlers_{std::move(handlers)} {
-  subscriptions_ = {connection_->subscribe(std::string(kRobotStateChannel), &Subscriber::receive_state, this),
-                    connection_->subscribe(std::string(kRobotAckChannel), &Subscriber::receive_ack, this)};
-  for (lcm::Subscription* subscription : subscriptions_) subscription->setQueueCapacity(kQueuedMessages);
+  subscriptions_ = {lcm_subscribe(connection_.get(), kRobotStateChannel, &Subscriber::receive_state, this),
+                    lcm_subscribe(connection_.get(), kRobotAckChannel, &Subscriber::receive_ack, this)};
+  for (lcm_subscription_t* subscription : subscriptions_) {
+    lcm_subscription_set_queue_capacity(subscription, kQueuedMessages);
+  }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 Subscriber::~Subscriber() {
   thread_.request_stop();
   thread_.join();
-  for (lcm::Subscription* subscription : subscriptions_) connection_->unsubscribe(subscription);
+  for (lcm_subscription_t* subscription : subscriptions_) lcm_unsubscribe(connection_.get(), subscription);
 }
 
 void Subscriber::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    if (connection_->handleTimeout(kWaitMs) >= 0) continue;
+    if (lcm_handle_timeout(connection_.get(), kWaitMs) >= 0) continue;
     link_errors_.fetch_add(1, std::memory_order_relaxed);
     std::this_thread::sleep_for(std::chrono::milliseconds(kWaitMs));  // a broken link must not take the processor
   }
 }
 
-void Subscriber::receive_state(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-  hand_over(channel, decode_robot_state(bytes_of(*buffer), stamp()), handlers_.on_state);
+void Subscriber::receive_state(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept {
+  auto& self = *static_cast<Subscriber*>(subscriber);
+  self.hand_over(channel, decode_robot_state(bytes_of(*buffer), self.stamp()), self.handlers_.on_state);
 }
 
-void Subscriber::receive_ack(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-  hand_over(channel, decode_correction_ack(bytes_of(*buffer), stamp()), handlers_.on_ack);
+void Subscriber::receive_ack(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept {
+  auto& self = *static_cast<Subscriber*>(subscriber);
+  self.hand_over(channel, decode_correction_ack(bytes_of(*buffer), self.stamp()), self.handlers_.on_ack);
 }
 
 template <class T>
-void Subscriber::hand_over(const std::string& channel, const Received<T>& message,
+void Subscriber::hand_over(const char* channel, const Received<T>& message,
                            const std::function<void(const T&)>& handler) {
   if (message.ok()) {
     received_.fetch_add(1, std::memory_order_relaxed);

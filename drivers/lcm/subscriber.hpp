@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -13,14 +12,9 @@
 #include "drivers/lcm/connection.hpp"
 #include "drivers/lcm/messages.hpp"
 
-namespace lcm {
-class Subscription;
-struct ReceiveBuffer;
-}  // namespace lcm
-
 namespace stillcut {
 
-// Called on the subscriber's thread; each may be empty; none may throw (LCM is C).
+// Called on the subscriber's thread; each may be empty; none may throw: LCM, which calls, is C.
 struct RobotHandlers {
   std::function<void(const RobotState&)> on_state;
   std::function<void(const CorrectionAck&)> on_ack;
@@ -48,14 +42,14 @@ class Subscriber {
 
  private:
   void run(const std::stop_token& stop);
-  void receive_state(const lcm::ReceiveBuffer* buffer, const std::string& channel);
-  void receive_ack(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  static void receive_state(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept;
+  static void receive_ack(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept;
   template <class T>
-  void hand_over(const std::string& channel, const Received<T>& message, const std::function<void(const T&)>& handler);
+  void hand_over(const char* channel, const Received<T>& message, const std::function<void(const T&)>& handler);
   [[nodiscard]] std::int64_t stamp() const;
 
   LcmConnection connection_;
-  std::vector<lcm::Subscription*> subscriptions_;  // LCM's; given back by the destructor
+  std::vector<lcm_subscription_t*> subscriptions_;
   Clock clock_;
   RobotHandlers handlers_;
   std::atomic<std::int64_t> received_{0};

@@ -1,11 +1,12 @@
-// A cut made of known parts, for tests of the chatter monitor: tooth harmonics and runout that follow the spindle angle,
-// noise, knocks, and a chatter line that starts, grows and ends when the test says so. Not a model of milling: here the
-// truth is set by hand. Times are seconds from the first sample.
+// A cut made of known parts, for tests of the chatter monitor: tooth harmonics and runout that follow the spindle
+// angle, noise, knocks, and a chatter line that starts, grows and ends when the test says so. Not a model of milling:
+// here the truth is set by hand. Times are seconds from the first sample.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -151,8 +152,8 @@ inline SyntheticLog record(const SyntheticCut& cut) {
   return log;
 }
 
-// Plays a log into a monitor as the daemon does: readings and frames in order of their stamps. `each(view)` sees the view
-// after every frame.
+// Plays a log into a monitor as the daemon does: readings and frames in order of their stamps. `each(view)` sees the
+// view after every frame.
 template <typename Each>
 std::vector<Event> play(const SyntheticLog& log, Monitor& monitor, Each&& each) {
   std::vector<Event> events;

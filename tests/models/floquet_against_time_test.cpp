@@ -49,7 +49,6 @@ class TimeIntegration {
       if (period >= periods / 2) logarithm -= std::log(scale);
       for (double& value : state_) value *= scale;
       for (Eigen::Vector2d& x : history_) x *= scale;
-      if (period >= periods / 2) logarithm += std::log(1e-6);
     }
     return std::exp(logarithm / (periods - periods / 2));
   }

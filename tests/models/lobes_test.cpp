@@ -112,6 +112,15 @@ TEST(Lobes, TheSummaryOfManyModesKeepsTheMostCompliant) {
   EXPECT_NEAR(diagram.modes[0].frequency_hz, 300.0, 1e-9);
 }
 
+TEST(Lobes, RefusesMoreModesThanTheFloquetSolutionTakes) {
+  const RobotCell cell;
+  const std::vector<Mode> modes(kMostFloquetModes + 1, test::mode_of(100, 0.03, 1e9, 1, 0));
+  const double speeds[] = {300.0};
+  EXPECT_THROW(depth_limits(cell.tool, cell.material, cell.cut, modes, speeds, {}), std::invalid_argument);
+  EXPECT_NO_THROW(
+      depth_limits(cell.tool, cell.material, cell.cut, modes, speeds, {.method = LobeMethod::zeroth_order}));
+}
+
 TEST(Lobes, SpeedsIncludeBothEnds) {
   const auto speeds = equally_spaced_speeds(100.0, 200.0, 7);
   EXPECT_EQ(speeds.size(), 7u);

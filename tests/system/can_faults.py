@@ -4,7 +4,7 @@
 One scenario a fault. Frames come from can-utils (canplayer, cansend, cangen), interfaces from iproute2. Whatever happened,
 the playback of the daemon's recording must decide as the daemon did.
 """
-from scenario import events_of, main, require, same_decisions
+from scenario import events_of, main, number, require, same_decisions
 
 INTERFACE_LOST = """
 from_to cut.log 0 1.5 > first.log; from_to cut.log 2 3.5 > second.log; from_to cut.log 4 5 > third.log
@@ -31,7 +31,7 @@ stop_daemon
 """
 
 LOST_FRAMES = """
-awk -v id="$(sensor_id cut.log)" 'index($3, id "#") != 1 || ++n % 100' cut.log > thinned.log
+awk -v id="$(sensor_id cut.log)" 'index($3, id "#") != 1 || ++n % 100 != 50' cut.log > thinned.log
 start_daemon
 play thinned.log
 stop_daemon
@@ -76,9 +76,18 @@ def lines(folder, *names):
     return sum(len(folder.text(name).splitlines()) for name in names)
 
 
+def silent_frames(folder):
+    """Sensor frames of the cut that fall between the parts that were played."""
+    sensor = [line for line in folder.text("cut.log").splitlines() if "##" in line]
+    played = set("".join(folder.text(name) for name in ("first.log", "second.log", "third.log")).splitlines())
+    last = max(i for i, line in enumerate(sensor) if line in played)
+    return sum(line not in played for line in sensor[:last])
+
+
 def interface_lost(folder):
     events, summary = run(folder, INTERFACE_LOST)
     require(summary["frames"] == lines(folder, "first.log", "second.log", "third.log"), "not every frame was heard")
+    require(summary["frames_lost"] == silent_frames(folder), "frames sent while the interface was away are not counted")
     require(summary["reopened"] == 1, "the interface that came back was not opened once")
     require(sum("silent" in note for note in faults(events)) >= 2, f"each silence is a fault: {faults(events)}")
 
@@ -95,7 +104,13 @@ def lost_frames(folder):
     lost = lines(folder, "cut.log") - lines(folder, "thinned.log")
     require(lost >= 100 and summary["frames_lost"] == lost, f"{lost} frames were left out, {summary['frames_lost']} counted")
     require(any("lost" in note for note in faults(events)), f"loss is a fault: {faults(events)}")
-    require(any(e["event"] == "chatter_onset" for e in events), "the chatter was missed")
+    whole, _ = folder.replay("cut.log")
+    onset = next(e for e in events_of(whole) if e["event"] == "chatter_onset")
+    found = [e for e in events if e["event"] == "chatter_onset"]
+    require(found, "the chatter was missed")
+    require(abs(number(found[0]["time_s"]) - number(onset["time_s"])) < 0.3 and
+            abs(number(found[0]["frequency_hz"]) - number(onset["frequency_hz"])) < 5,
+            f"first onset {found[0]}; without loss {onset}")
 
 
 def flood(folder):

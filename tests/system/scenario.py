@@ -47,11 +47,14 @@ class Folder:
         cell = self.path / "cell"
         shutil.copytree(options.cell.parent, cell)
         text = (cell / options.cell.name).read_text()
-        (cell / "live.toml").write_text(re.sub(r'(?m)^bus = .*$', 'bus = "socketcan:vcan0"', text))
+        text = re.sub(r'(?m)^bus = .*$', 'bus = "socketcan:vcan0"', text)
+        if not options.log:  # the guest has one slow processor for sender, kernel and daemon: a slower sensor
+            text = re.sub(r"(?m)^sample_rate_hz = .*$", "sample_rate_hz = 10000", text)
+        (cell / "live.toml").write_text(text)
         if options.log:
             shutil.copy(options.log, self.path / "cut.log")
         else:
-            self.stillcut("simulate", "cell/" + options.cell.name, "--duration", "6", "--depth", DEPTH, "--can", "cut.log")
+            self.stillcut("simulate", "cell/live.toml", "--duration", "6", "--depth", DEPTH, "--can", "cut.log")
         subprocess.run(["chmod", "-R", "a+rwX", self.path], check=True)  # the guest's kernel may run as nobody
 
     def __enter__(self):
@@ -80,10 +83,11 @@ class Folder:
         require(status == 0, f"the run in the guest ended with {status}")
 
     def replay(self, log):
-        """Plays a log through `stillcut replay`; returns its summary and the text of the events file it wrote."""
-        events = log.replace(".log", ".replay.csv")
-        summary = json.loads(self.stillcut("replay", "cell/live.toml", "--can", log, "--events", events, "--json"))
-        return summary, self.text(events)
+        """Plays a log through `stillcut replay`; returns the text of the events file, and the LCM log of its messages."""
+        name = self.path / log.replace(".log", ".replay")
+        self.stillcut("replay", "cell/live.toml", "--can", log, "--events", f"{name}.csv", "--publish",
+                      f"file://{name}.lcm?mode=w")
+        return self.text(f"{name}.csv"), f"{name}.lcm"
 
     def daemon_summary(self):
         """The JSON object that stillcutd prints at its end."""
@@ -101,14 +105,15 @@ def events_of(text):
 def same_decisions(folder):
     """What the daemon decided live equals the playback of what it recorded, byte for byte; returns the events.
 
-    The live run also knows of the silence after the last frame, of which a recording can tell nothing: only faults.
+    The live run also knows of the silence after the last frame, of which a recording can tell nothing: faults only, left out.
     """
     live = folder.text("live.csv")
-    _, replayed = folder.replay("record.log")
+    replayed, _ = folder.replay("record.log")
     require(live.startswith(replayed), f"live and playback of the recording differ:\n{live}\n{replayed}")
-    after = [e for e in events_of(live)[len(events_of(replayed)):] if e["event"] != "fault"]
+    events = events_of(replayed)
+    after = [e for e in events_of(live)[len(events):] if e["event"] != "fault"]
     require(not after, f"decided after the last frame: {after}")
-    return events_of(live)
+    return events
 
 
 def number(text):

@@ -21,7 +21,7 @@ CanFrame vibration_frame(int counter, const std::array<std::array<std::int16_t, 
   frame.id = 288;
   frame.fd = true;
   frame.length = 64;
-  frame.stamp_ns = counter * 375'000;
+  frame.stamp_ns = counter * 375'000LL;
   frame.data[0] = static_cast<std::uint8_t>(counter);
   frame.data[1] = static_cast<std::uint8_t>(counter >> 8);
   frame.data[2] = 10;
@@ -66,7 +66,7 @@ TEST_F(TriaxialDecoder, DecodesEveryAxisOldestFirst) {
     ASSERT_TRUE(decode.decode(vibration_frame(n, raw), out_));
     ASSERT_EQ(out_.blocks, 1);
     const SampleBlock& block = out_.block[0];
-    EXPECT_EQ(block.stamp_ns, n * 375'000);
+    EXPECT_EQ(block.stamp_ns, n * 375'000LL);
     EXPECT_EQ(block.samples, 10);
     EXPECT_EQ(block.axes_present, 7);
     EXPECT_EQ(block.frames_lost, 0U);

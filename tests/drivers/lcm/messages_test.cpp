@@ -222,8 +222,8 @@ TEST(Messages, SurviveAnyDamage) {
 
 TEST(Messages, CutATextThatIsTooLong) {
   // A longer note than a ShortText holds, from another sender: built by hand from an event with an empty note.
-  MessageBytes bytes = encode(Event{});
-  bytes.resize(bytes.size() - 5);
+  const MessageBytes empty_note = encode(Event{});
+  MessageBytes bytes(empty_note.begin(), empty_note.end() - 5);
   for (const std::uint8_t byte : {0, 0, 0, 201}) bytes.push_back(byte);
   bytes.insert(bytes.end(), 200, 'n');
   bytes.push_back(0);

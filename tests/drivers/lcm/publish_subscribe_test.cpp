@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
-#include <lcm/lcm-cpp.hpp>
 #include <mutex>
 
 #include "drivers/files/input_error.hpp"
@@ -91,8 +90,8 @@ TEST(PublishSubscribe, CountsAndReportsWhatCannotBeTrusted) {
   bad_state.feed_rate = std::numeric_limits<double>::quiet_NaN();
   publisher.publish(bad_state);
   const char garbage[] = "not a message";
-  connection->publish(std::string(kRobotAckChannel), garbage, sizeof garbage);
-  connection->publish(std::string(kRobotStateChannel), garbage, 0);
+  lcm_publish(connection.get(), kRobotAckChannel, garbage, sizeof garbage);
+  lcm_publish(connection.get(), kRobotStateChannel, garbage, 0);
   publisher.publish(RobotState{});
   ASSERT_TRUE(inbox.wait_for(4));
   EXPECT_EQ(subscriber.bad(), 3);
@@ -101,21 +100,19 @@ TEST(PublishSubscribe, CountsAndReportsWhatCannotBeTrusted) {
   EXPECT_EQ(inbox.bad.at(0), "feed_rate_m_per_s is not a number from 0 to 100");
 }
 
-// Receives what the daemon publishes, with LCM's own means.
-struct Listener {
-  std::vector<std::pair<std::string, MessageBytes>> messages;
+// What the daemon publishes, received with LCM's own means.
+using Inbound = std::vector<std::pair<std::string, MessageBytes>>;
 
-  void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-    const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
-    messages.emplace_back(channel, MessageBytes(bytes, bytes + buffer->data_size));
-  }
-};
+void receive(const lcm_recv_buf_t* buffer, const char* channel, void* received) {
+  const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
+  static_cast<Inbound*>(received)->emplace_back(channel, MessageBytes(bytes, bytes + buffer->data_size));
+}
 
 TEST(PublishSubscribe, SendsEachOutputOnItsChannel) {
   RandomMessages random(6);
   const LcmConnection connection = open_lcm("memq://");
-  Listener listener;
-  connection->subscribe("STILLCUT_.*", &Listener::receive, &listener);
+  Inbound received;
+  lcm_subscribe(connection.get(), "STILLCUT_.*", receive, &received);
   Publisher publisher(connection);
   const Event event = random.event();
   const Correction correction = random.correction();
@@ -123,11 +120,11 @@ TEST(PublishSubscribe, SendsEachOutputOnItsChannel) {
   EXPECT_TRUE(publisher.publish(Output(event)));
   EXPECT_TRUE(publisher.publish(Output(correction)));
   EXPECT_TRUE(publisher.publish(Output(status)));
-  while (listener.messages.size() < 3) ASSERT_GT(connection->handleTimeout(10000), 0);
+  while (received.size() < 3) ASSERT_GT(lcm_handle_timeout(connection.get(), 10000), 0);
   EXPECT_EQ(publisher.sent(), 3);
-  EXPECT_EQ(listener.messages[0], std::pair(std::string("STILLCUT_EVENT"), encode(event)));
-  EXPECT_EQ(listener.messages[1], std::pair(std::string("STILLCUT_CORRECTION"), encode(correction)));
-  EXPECT_EQ(listener.messages[2], std::pair(std::string("STILLCUT_STATUS"), encode(status)));
+  EXPECT_EQ(received[0], std::pair(std::string("STILLCUT_EVENT"), encode(event)));
+  EXPECT_EQ(received[1], std::pair(std::string("STILLCUT_CORRECTION"), encode(correction)));
+  EXPECT_EQ(received[2], std::pair(std::string("STILLCUT_STATUS"), encode(status)));
 }
 
 TEST(PublishSubscribe, StopsWithoutMessagesAndLeavesTheConnectionUsable) {

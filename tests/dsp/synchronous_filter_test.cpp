@@ -1,0 +1,133 @@
+#include "dsp/synchronous_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace stillcut {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// Amplitude ratio, after over before, of a tone of `orders` per revolution once the filter has settled.
+double gain_at(double orders, double samples_per_revolution, int settle_revolutions = 200) {
+  SynchronousFilter filter{1};
+  filter.set_samples_per_revolution(samples_per_revolution);
+  double before = 0.0, after = 0.0;
+  const auto settle = static_cast<long>(settle_revolutions * samples_per_revolution);
+  const auto measure = static_cast<long>(64 * samples_per_revolution);
+  for (long n = 0; n < settle + measure; ++n) {
+    const double turned = static_cast<double>(n) / samples_per_revolution;
+    const std::array<float, 1> x = {static_cast<float>(std::sin(kTwoPi * orders * turned + 0.3))};
+    std::array<float, 1> residual{};
+    filter.process(turned - std::floor(turned), x, residual);
+    if (n < settle) continue;
+    before += static_cast<double>(x[0]) * x[0];
+    after += static_cast<double>(residual[0]) * residual[0];
+  }
+  return std::sqrt(after / before);
+}
+
+TEST(SynchronousFilter, TakesOutEverySpindleOrderUpToAQuarterOfTheSamplesOfARevolution) {
+  for (const double samples : {66.7, 100.0, 256.0, 461.3, 900.0}) {
+    for (int order = 1; order <= samples / 4.0; order += 1 + order / 8) {
+      EXPECT_LT(20.0 * std::log10(gain_at(order, samples)), -40.0) << order << " of " << samples;
+    }
+  }
+}
+
+TEST(SynchronousFilter, PassesLinesBetweenTheOrdersWithinADecibel) {
+  for (const double samples : {66.7, 256.0, 900.0}) {
+    for (const double fraction : {0.15, 0.3, 0.5, 0.7, 0.85}) {
+      for (const double order : {0.0, 3.0, 8.0, samples / 6.0, samples / 4.0}) {
+        const double decibels = 20.0 * std::log10(gain_at(std::floor(order) + fraction, samples));
+        EXPECT_NEAR(decibels, 0.0, 1.0) << order + fraction << " of " << samples;
+      }
+    }
+  }
+}
+
+// Tooth harmonics of two teeth, runout at the odd orders, and a mean value.
+double forced(double turned) {
+  double x = 1.0;
+  for (int order = 1; order <= 20; ++order)
+    x += (order % 2 == 0 ? 10.0 : 3.0) / order * std::cos(kTwoPi * order * turned + order);
+  return x;
+}
+
+TEST(SynchronousFilter, FollowsASpeedRamp) {
+  constexpr double kRate_hz = 25600.0;
+  SynchronousFilter filter{1};
+  double turned = 0.0, before = 0.0, after = 0.0;
+  for (int n = 0; n < 3 * 25600; ++n) {
+    const double t = n / kRate_hz;
+    const double rpm = 5000.0 + 1000.0 * std::max(0.0, t - 1.0);
+    turned += rpm / 60.0 / kRate_hz;
+    if (n % 500 == 0) filter.set_samples_per_revolution(kRate_hz * 60.0 / rpm);
+    const std::array<float, 1> x = {static_cast<float>(forced(turned))};
+    std::array<float, 1> residual{};
+    filter.process(turned - std::floor(turned), x, residual);
+    if (t < 1.0) continue;
+    before += x[0] * x[0];
+    after += residual[0] * residual[0];
+  }
+  EXPECT_LT(10.0 * std::log10(after / before), -40.0);
+}
+
+TEST(SynchronousFilter, LearnsNothingFromWhatIsNoNumber) {
+  SynchronousFilter spoilt{2}, clean{2};
+  spoilt.set_samples_per_revolution(100.0);
+  clean.set_samples_per_revolution(100.0);
+  for (int n = 0; n < 4000; ++n) {
+    const double angle = (n % 100) / 100.0;
+    const auto x = static_cast<float>(forced(angle));
+    const bool bad = n % 397 == 0;
+    std::array<float, 2> a{}, b{};
+    spoilt.process(angle, std::array{bad ? std::numeric_limits<float>::quiet_NaN() : x, x}, a);
+    clean.process(angle, std::array{x, x}, b);
+    EXPECT_EQ(a[1], b[1]);
+    if (bad) {
+      EXPECT_EQ(a[0], 0.0F);
+    } else if (n > 3000) {
+      EXPECT_NEAR(a[0], 0.0F, 0.1F);
+    }
+  }
+}
+
+TEST(SynchronousFilter, StartsAnewOnlyWhenTheSpeedAsksForOtherKnots) {
+  SynchronousFilter filter{1};
+  EXPECT_TRUE(filter.set_samples_per_revolution(256.0));
+  std::array<float, 1> residual{};
+  for (int n = 0; n < 2560; ++n) filter.process((n % 256) / 256.0, std::array{1.0F}, residual);
+  EXPECT_FALSE(filter.set_samples_per_revolution(250.0));
+  EXPECT_FALSE(filter.set_samples_per_revolution(262.0));
+  EXPECT_GT(filter.learned_revolutions(), 5.0);
+  EXPECT_TRUE(filter.set_samples_per_revolution(1000.0));
+  EXPECT_EQ(filter.learned_revolutions(), 0.0);
+  EXPECT_TRUE(filter.set_samples_per_revolution(100.0));
+}
+
+TEST(SynchronousFilter, DoesNotRepeatAKnock) {
+  SynchronousFilter filter{1};
+  filter.set_samples_per_revolution(256.0);
+  std::mt19937 random{1};
+  std::normal_distribution<double> normal{0.0, 0.3};
+  double quiet = 0.0, echo = 0.0;
+  for (int n = 0; n < 256 * 62; ++n) {
+    const double since = (n - 256 * 60) / 256.0;  // revolutions since a knock of 200 times the noise
+    double x = forced((n % 256) / 256.0) + normal(random);
+    if (since >= 0.0) x += 60.0 * std::exp(-8.0 * since) * std::sin(kTwoPi * 5.3 * since);
+    std::array<float, 1> residual{};
+    filter.process((n % 256) / 256.0, std::array{static_cast<float>(x)}, residual);
+    if (since >= -2.0 && since < 0.0) quiet += residual[0] * residual[0];
+    if (since >= 1.0) echo += residual[0] * residual[0];
+  }
+  EXPECT_LT(std::sqrt(echo), 4.0 * std::sqrt(quiet));  // learned in full it would be about 10
+}
+
+}  // namespace
+}  // namespace stillcut
