@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "dsp/tone.hpp"
 
@@ -32,7 +33,7 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       kept_{kWindowsKept * length_},
       hop_{length_ / kHopsAWindow},
       bins_{length_ / 2 + 1},
-      first_{std::max(2, static_cast<int>(std::ceil(settings.lowest_hz * length_ / sample_rate_hz)))},
+      first_{std::max(2, static_cast<int>(std::ceil(settings.lowest_hz * length_ / sample_rate_hz)) - 1)},
       last_{static_cast<int>(settings.highest_of_rate * length_)},
       bin_hz_{sample_rate_hz / length_},
       settings_{settings},
@@ -41,7 +42,8 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       windowed_(length_),
       spectrum_(bins_),
       inverse_limit_(bins_),
-      ratio_(bins_, 0.0F) {
+      ratio_(bins_, 0.0F),
+      over_floor_(bins_, 0.0F) {
   float sum = 0.0F;
   for (int n = 0; n < length_; ++n) {
     window_[n] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * n / length_));
@@ -85,6 +87,26 @@ void LineWatch::transform() noexcept {
   }
 }
 
+// What all bins have gained together is a change of the cut or a knock, not a line: the mean of power over floor, each
+// bin capped so that a line cannot raise it, unless most of them are above the cap.
+float LineWatch::common_rise() const noexcept {
+  constexpr int kLanes = 8;  // sums that do not wait for each other
+  const int count = last_ - first_ + 1;
+  const float* const s = over_floor_.data() + first_;
+  float mean = 0.0F;
+  for (float cap = 6.0F; cap < 1e6F; cap *= 4.0F) {
+    std::array<float, kLanes> sums{};
+    int b = 0;
+    for (; b + kLanes <= count; b += kLanes) {
+      for (int lane = 0; lane < kLanes; ++lane) sums[lane] += s[b + lane] < cap ? s[b + lane] : cap;
+    }
+    for (; b < count; ++b) sums[0] += std::min(s[b], cap);
+    mean = std::accumulate(sums.begin(), sums.end(), 0.0F) / static_cast<float>(count);
+    if (mean < 0.5F * cap) break;
+  }
+  return mean;
+}
+
 void LineWatch::judge() noexcept {
   auto& newest = history_[history_at_];
   history_at_ = (history_at_ + 1) % kHopsToStay;
@@ -97,15 +119,18 @@ void LineWatch::judge() noexcept {
     float* const floor = floor_[a].data();
     const float* const power = power_[a].data();
     if (floor_hops_ == 0) std::copy(power + first_, power + last_ + 1, floor + first_);
-    // What all bins have gained together is a change of the cut or a knock, not a line.
-    float common = 0.0F;
-    for (int b = first_; b <= last_; ++b) common += std::min(power[b] / std::max(floor[b], kTiniestFloor), 6.0F);
-    common = std::max(1.0F, common / static_cast<float>(last_ - first_ + 1));
-    const float per_common = 1.0F / common;
+    float* const over_floor = over_floor_.data();
+    for (int b = first_; b <= last_; ++b)
+      over_floor[b] = power[b] / (floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor);
+    const float common = std::max(1.0F, common_rise());
+    const float per_common = 1.0F / common, highest = clip * common;
+    float* const s = newest.data();
     for (int b = first_; b <= last_; ++b) {
-      const float f = std::max(floor[b], kTiniestFloor);
-      newest[b] = std::max(newest[b], power[b] / f * per_common);
-      floor[b] = f + gain * (std::min(power[b], clip * common * f) - f);
+      const float f = floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor;
+      const float standing_out = over_floor[b] * per_common;
+      s[b] = standing_out > s[b] ? standing_out : s[b];
+      const float seen = over_floor[b] < highest ? over_floor[b] : highest;
+      floor[b] = f + gain * f * (seen - 1.0F);
     }
   }
   if (!floor_held_) floor_hops_ = std::min(floor_hops_ + 1, 1 << 20);

@@ -91,10 +91,11 @@ class LineWatch {
   void make_room() noexcept;
   void finish_hop() noexcept;
   void transform() noexcept;
+  [[nodiscard]] float common_rise() const noexcept;
   void judge() noexcept;
   void find_candidates() noexcept;
 
-  int axes_, length_, kept_, hop_, bins_, first_, last_;  // bins first_..last_ are watched
+  int axes_, length_, kept_, hop_, bins_, first_, last_;  // lines are sought between bins first_ and last_
   double bin_hz_;
   LineWatchSettings settings_;
   RealFft fft_;
@@ -102,7 +103,7 @@ class LineWatch {
   std::vector<std::complex<float>> spectrum_;
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
-  std::vector<float> inverse_limit_, ratio_;
+  std::vector<float> inverse_limit_, ratio_, over_floor_;
   int begin_ = 0, filled_ = 0, hops_in_window_ = 0, history_at_ = 0, floor_hops_ = 0;
   float power_scale_;
   bool floor_held_ = false;

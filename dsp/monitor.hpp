@@ -115,11 +115,13 @@ class Monitor {
   double steady_s_ = 0.0;  // how long speed and contact have been unchanged
   std::uint32_t speed_fault_ = kNoDoubt;
   std::array<double, kDoubtCount> clear_for_s_{};
+  std::array<Suspect, kMaxSensors> suspect_{};
   // The episode of chatter that is open.
   std::size_t chatter_sensor_ = 0;
   double below_s_ = 0.0, doubt_s_ = 0.0;
+  double largest_amplitude_ = 0.0;
+  bool faded_ = false;
   int free_hops_ = 0;
-  std::array<Suspect, kMaxSensors> suspect_{};
   std::array<Event, kMaxEvents> events_{};
   std::size_t event_count_ = 0;
 };

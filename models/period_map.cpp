@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "models/cutting_pieces.hpp"
@@ -19,6 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double kCyclesPerStretch = 4.0;
+constexpr double kMostCycles = 120.0;  // in a cutting piece: what dense matrices hold in reasonable time
 
 // What is observed at a node, in rows, and how the cut answers: F = -depth (force c + damping_force c').
 struct NodeCoupling {
@@ -61,6 +63,11 @@ std::vector<Stretch> divide(const LinearCut& cut, double lag, double speed, doub
     }
     // The chip follows the vibration and the turning of the tooth's force, which repeats every half turn.
     const double cycles = duration * highest_frequency / kTwoPi + (piece.to - piece.from) / std::numbers::pi;
+    if (cycles > kMostCycles) {
+      throw std::invalid_argument("spindle speed: so low that the highest mode vibrates over " +
+                                  std::to_string(static_cast<int>(kMostCycles)) +
+                                  " times while a tooth cuts; raise the speed, or use method zoa");
+    }
     const int parts = std::max(1, static_cast<int>(std::ceil(cycles / kCyclesPerStretch)));
     const int nodes = static_cast<int>(std::ceil(collocation.nodes + collocation.nodes_per_cycle * cycles / parts));
     const ForcedStretch& table = tables.try_emplace(nodes, nodes).first->second;

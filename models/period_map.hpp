@@ -34,8 +34,8 @@ struct PeriodMap {
 };
 
 // The map for modes in the feed frame at a spindle speed in rad/s. `depth` places the ends of helical teeth and is
-// otherwise unused. Throws std::invalid_argument for a speed that is not positive, a negative depth, or modes that
-// check_modes refuses.
+// otherwise unused. Throws std::invalid_argument for a speed that is not positive, or so low that a mode vibrates more
+// than 120 times while a tooth cuts, for a negative depth, and for modes that check_modes refuses.
 PeriodMap period_map(const LinearCut& cut, std::span<const Mode> feed_frame_modes, double speed, double depth,
                      const Collocation& collocation);
 

@@ -1,6 +1,6 @@
 // Zeroth-order (single-frequency) stability lobes of Altintas and Budak: the mean of the cutting stiffness over a turn,
 // so a fast first look. It cannot see flip lobes and is far off when structural modes lie near the tooth-passing
-// frequency (docs/stability.md); what the runtime trusts is models/floquet.hpp.
+// frequency; what the runtime trusts is models/floquet.hpp.
 #pragma once
 
 #include <array>

@@ -101,7 +101,8 @@ void Compensator::start(const CompensatorInputs& in, const SpeedChoice& choice, 
     // A programmed speed that the spindle cannot turn is none.
     const bool programmed =
         in.nominal_speed >= settings_.spindle.min_speed && in.nominal_speed <= settings_.spindle.max_speed;
-    base_speed_ = programmed ? in.nominal_speed : heard.speed;
+    base_speed_ = programmed ? in.nominal_speed
+                             : std::clamp(heard.speed, settings_.spindle.min_speed, settings_.spindle.max_speed);
     answered_ns_ = in.now_ns;
     first_sequence_ = sequence_ + 1;
   }

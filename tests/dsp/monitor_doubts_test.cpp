@@ -81,7 +81,7 @@ TEST(MonitorDoubts, SaturationIsAFault) {
   expect_fault(outcome(spoilt(9.0,
                               [](SampleBlock& b) {
                                 fill(b, 50.0F);
-                                b.full_scale[1] = 0b111;
+                                b.full_scale[1] = (1U << b.samples) - 1U;
                               })),
                "saturated", 0.01);
 }

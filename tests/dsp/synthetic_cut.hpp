@@ -79,16 +79,14 @@ inline SyntheticLog record(const SyntheticCut& cut) {
   std::mt19937 random{cut.seed};
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> any_phase{0.0, 2.0 * std::numbers::pi}, within{-1.0, 1.0};
-  struct Part {
-    double amplitude, phase;
-  };
-  std::array<std::array<Part, kOrders + 1>, kMaxAxes> parts{};
+  std::array<std::array<std::complex<double>, kOrders + 1>, kMaxAxes> parts{};
   std::array<double, kMaxAxes> chatter_phase{}, chatter_share{};
   for (int a = 0; a < kMaxAxes; ++a) {
     for (int h = 1; h <= kOrders; ++h) {
       const double tooth_harmonic = std::max(1.0, std::round(static_cast<double>(h) / cut.teeth));
       const double size = cut.forced / std::pow(tooth_harmonic, 1.2) * (h % cut.teeth == 0 ? 1.0 : cut.runout);
-      parts[a][h] = {size * (1.0 + 0.3 * within(random)), any_phase(random)};
+      const double amplitude = size * (1.0 + 0.3 * within(random));
+      parts[a][h] = std::polar(amplitude, any_phase(random));
     }
     chatter_phase[a] = any_phase(random);
     chatter_share[a] = a == 0 ? 1.0 : 0.5 + 0.4 * within(random);
@@ -129,7 +127,7 @@ inline SyntheticLog record(const SyntheticCut& cut) {
     for (int a = 0; a < cut.axes; ++a) {
       double x = cut.noise * std::max(engaged, 0.1) * normal(random) + ringing;
       for (int h = 1; h <= kOrders; ++h) {
-        x += engaged * parts[a][h].amplitude * (turn[h] * std::polar(1.0, parts[a][h].phase)).real();
+        x += engaged * (turn[h].real() * parts[a][h].real() - turn[h].imag() * parts[a][h].imag());
       }
       x += grown * chatter_share[a] * std::sin(chatter_angle + chatter_phase[a]);
       block.acceleration[a][block.samples] = static_cast<float>(x);

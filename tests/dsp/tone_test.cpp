@@ -129,9 +129,9 @@ TEST(Recurrence, IsNoneForOrdersThatRunTogetherInTheWindow) {
 TEST(HannPeakOffset, IsExactForALoneLine) {
   for (double offset = -0.5; offset <= 0.5; offset += 0.1) {
     const auto response = [](double bins) {  // Hann window, main lobe
-      return std::abs(bins) < 1e-9
-                 ? 1.0
-                 : std::abs(std::sin(std::numbers::pi * bins) / (std::numbers::pi * bins * (1.0 - bins * bins)));
+      if (std::abs(bins) < 1e-9) return 1.0;
+      if (std::abs(std::abs(bins) - 1.0) < 1e-9) return 0.5;
+      return std::abs(std::sin(std::numbers::pi * bins) / (std::numbers::pi * bins * (1.0 - bins * bins)));
     };
     EXPECT_NEAR(hann_peak_offset(response(-1.0 - offset), response(-offset), response(1.0 - offset)), offset, 1e-9);
   }

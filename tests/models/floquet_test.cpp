@@ -118,6 +118,7 @@ TEST(Floquet, RefusesWhatIsNotACut) {
   const auto [cut, modes] = reference_case("a", 0.5, Milling::down);
   EXPECT_THROW(floquet_point(cut, modes, 0.0, 1e-3), std::invalid_argument);
   EXPECT_THROW(floquet_point(cut, modes, -100.0, 1e-3), std::invalid_argument);
+  EXPECT_THROW(floquet_point(cut, modes, 1e-3, 1e-3), std::invalid_argument);  // hours to a turn
   EXPECT_THROW(floquet_point(cut, modes, 100.0, -1e-3), std::invalid_argument);
   EXPECT_THROW(floquet_point(cut, modes, 100.0, std::nan("")), std::invalid_argument);
   EXPECT_THROW(floquet_point(cut, {}, 100.0, 1e-3), std::invalid_argument);

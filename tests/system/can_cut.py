@@ -5,6 +5,7 @@ What the daemon decided live must equal, byte for byte, the playback of what it 
 original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz.
 """
 import math
+import statistics
 
 import lcm_log
 from scenario import events_of, main, number, require, same_decisions
@@ -22,12 +23,18 @@ wait $logger
 """
 
 
-def same_story(live, original):
-    """The same story within 5 ms and 0.5 Hz."""
+def stamps(frames):
+    """Seconds since the first frame."""
+    seconds = [float(line[1:line.index(")")]) for line in frames]
+    return [s - seconds[0] for s in seconds]
+
+
+def same_story(live, original, late):
+    """The same events within 5 ms and 0.5 Hz; `late`: the whole log was sent that much later than its first frame."""
     names = lambda events: [(e["event"], e["kind"]) for e in events]
     require(names(live) == names(original), f"live {names(live)}, playback of the original {names(original)}")
     for a, b in zip(live, original):
-        apart = abs(number(a["time_s"]) - number(b["time_s"]))
+        apart = abs(number(a["time_s"]) - late - number(b["time_s"]))
         require(apart <= 0.005, f"{a['event']} is {1e3 * apart:.2f} ms from the original's at {b['time_s']} s")
         fa, fb = number(a["frequency_hz"]), number(b["frequency_hz"])
         require(math.isnan(fa) == math.isnan(fb) and not abs(fa - fb) > 0.5, f"{a['event']}: {fa} Hz, original {fb} Hz")
@@ -63,26 +70,48 @@ def as_the_contract_says(received, classes, events, start_us):
     require(corrections[-1].kind == 0, "the last message is no release")
 
 
+def lateness(frames, sent):
+    """Seconds by which each frame came later than the log says, seen from the first frame."""
+    return [a - b for a, b in zip(stamps(frames), stamps(sent))]
+
+
+def frames_of(folder, log):
+    return [line for line in folder.text(log).splitlines() if line.startswith("(")]
+
+
+def run_undisturbed(folder):
+    """Runs the cut in the guest; again, twice at most, where this machine kept the guest waiting for 20 ms or more."""
+    for _ in range(3):
+        folder.in_guest(RUN)
+        late = lateness(frames_of(folder, "record.log"), frames_of(folder, "cut.log"))
+        stall = max(late) - statistics.median(late)
+        if stall < 0.02:
+            return
+        print(f"   this machine kept the guest waiting for {1e3 * stall:.0f} ms")
+    require(False, "this machine is too busy for a test in real time")
+
+
 def cut(folder):
-    folder.in_guest(RUN)
+    run_undisturbed(folder)
     events = same_decisions(folder)
     for event in events:
         print("  ", ", ".join(event.values()))
     summary = folder.daemon_summary()
     print("  ", summary)
     require(summary["frames_lost"] == summary["frames_bad"] == summary["kernel_dropped"] == 0, "frames were lost")
-    frames = [line for line in folder.text("record.log").splitlines() if line.startswith("(")]
-    sent = folder.text("cut.log").splitlines()
+    frames, sent = frames_of(folder, "record.log"), frames_of(folder, "cut.log")
     contents = lambda log: [line.split()[2].replace("##5", "##1") for line in log]  # kernels add the FDF flag, 4
     require(contents(frames) == contents(sent), f"{len(sent)} frames sent, {len(frames)} recorded, or not the same")
 
     received = lcm_log.messages(folder.path / "received.lcm")
     same_messages(received, lcm_log.messages(folder.path / "record.replay.lcm"))
     start_us = round(1e6 * float(frames[0][1:frames[0].index(")")]))
-    as_the_contract_says(received, lcm_log.message_classes(folder.path), events, start_us)
+    as_the_contract_says(received, lcm_log.message_classes(folder.path / "types"), events, start_us)
     require(any(e["event"] == "chatter_onset" for e in events), "no chatter was found")
     original, _ = folder.replay("cut.log")
-    same_story(events, events_of(original))
+    late = statistics.median(lateness(frames, sent))
+    print(f"   sent {1e3 * late:.2f} ms later than the first frame says")
+    same_story(events, events_of(original), late)
 
 
 main({"cut": cut}, __doc__)

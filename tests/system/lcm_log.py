@@ -15,7 +15,7 @@ TYPES = pathlib.Path(__file__).resolve().parents[2] / "drivers/lcm"
 
 def message_classes(folder):
     """Generates the classes into `folder`; returns {channel: class}."""
-    (folder / "stillcut").mkdir()  # lcm-gen makes no folder itself
+    (folder / "stillcut").mkdir(parents=True)  # lcm-gen makes no folder itself
     subprocess.run(["lcm-gen", "-p", "--ppath", str(folder), *map(str, sorted(TYPES.glob("*.lcm")))], check=True)
     sys.path.insert(0, str(folder))
     names = {"STILLCUT_CORRECTION": "correction_t", "STILLCUT_EVENT": "event_t", "STILLCUT_STATUS": "status_t"}

@@ -16,6 +16,10 @@
 #include "tools/plot_scale.hpp"
 #include "tools/spectrogram.hpp"
 
+// fontconfig keeps what it read of the fonts to the program's end; that is no leak of ours.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+
 namespace stillcut::plot {
 namespace {
 
