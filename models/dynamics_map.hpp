@@ -1,5 +1,5 @@
 // The dynamics map: modes measured at postures, and the modes predicted between them by inverse distance weighting
-// (surface paper, eqs 16-18; docs/dynamics-map.md).
+// (surface paper, eqs 16-18; docs/stability.md).
 #pragma once
 
 #include <array>

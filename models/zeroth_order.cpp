@@ -1,7 +1,7 @@
 #include "models/zeroth_order.hpp"
 
-#include <Eigen/LU>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -174,10 +174,10 @@ TEST(Compensator, ShadowFollowsTheFrequencyOnlyWhenItDrifts) {
   EXPECT_EQ(bench.targets_rpm().size(), 1U);
   bench.run(1.0, chattering(0, 738.0 * 0.93));
   ASSERT_EQ(bench.targets_rpm().size(), 2U);
-  EXPECT_NEAR(bench.targets_rpm()[1], 738.0 * 0.93 * 10.0, 1e-6);
+  EXPECT_NEAR(bench.targets_rpm()[1], 738.0 * 0.93 * 15.0, 1e-6);
   ASSERT_EQ(bench.events.size(), 2U);
   for (const Event& event : bench.events) EXPECT_EQ(event.type, EventType::correction);
-  EXPECT_NEAR(bench.events[1].spindle_speed_rpm, 738.0 * 0.93 * 10.0, 1e-6);
+  EXPECT_NEAR(bench.events[1].spindle_speed_rpm, 738.0 * 0.93 * 15.0, 1e-6);
   EXPECT_NEAR(bench.events[1].frequency_hz, 738.0 * 0.93, 1e-9);
   EXPECT_EQ(bench.releases(), 0);
 }
