@@ -77,7 +77,7 @@ void Core::add_samples(const SampleBlock& block) noexcept {
   counters_.frames_lost += block.frames_lost;
   bus_errors_told_ &= ~kBusOff;  // samples come: it is on again
   monitor_.add_samples(block);
-  decide(now_ns_);
+  decide(view().stamp_ns);  // the samples' own time: arrival jitter must not move a decision
 }
 
 // Bus-off and error-passive lose frames: told once, until the bus says that it was restarted or, after bus-off, samples
@@ -143,7 +143,8 @@ double Core::predicted_margin() const noexcept {
   return diagram == nullptr ? kNaN : margin_at(*diagram, view().speed, axial_depth());
 }
 
-void Core::decide(std::int64_t now_ns) noexcept {
+void Core::decide(std::int64_t stamp_ns) noexcept {
+  const std::int64_t now_ns = decided_ns_ = std::max(decided_ns_, stamp_ns);
   collect_events();
   CompensatorInputs in;
   in.now_ns = now_ns;

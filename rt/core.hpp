@@ -63,7 +63,7 @@ class Core {
 
  private:
   void step_to(std::int64_t now_ns) noexcept;
-  void decide(std::int64_t now_ns) noexcept;
+  void decide(std::int64_t stamp_ns) noexcept;
   void collect_events() noexcept;
   void adopt_lobes(std::int64_t now_ns) noexcept;
   void put_status(std::int64_t now_ns) noexcept;
@@ -85,7 +85,7 @@ class Core {
   bool robot_heard_ = false;
   bool out_of_order_told_ = false;
   std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well
-  std::int64_t origin_ns_ = 0, now_ns_ = 0, next_status_ns_ = 0;
+  std::int64_t origin_ns_ = 0, now_ns_ = 0, decided_ns_ = 0, next_status_ns_ = 0;
 };
 
 }  // namespace stillcut

@@ -1,5 +1,6 @@
 #include "tools/live_loop.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 namespace stillcut {
@@ -8,6 +9,7 @@ namespace {
 // How far behind the clock a silent tick moves data time: a frame stamped before that has long been in the socket, so
 // no frame can still come from a time that was declared silent.
 constexpr std::int64_t kBehindClock_ns = 20'000'000;
+constexpr std::int64_t kClockStep_ns = 1'000'000'000;  // no frame is held up this long: the clock was set back
 // Frames a tick takes at most, so that a flood delays one tick and not the thread for good.
 constexpr int kBatchesATick = 32;
 
@@ -27,6 +29,7 @@ bool LiveLoop::tick() noexcept {
     const std::size_t count = bus_.receive(batch_);
     drained = count < batch_.size();
     for (std::size_t i = 0; i < count; ++i) {
+      place_in_time(batch_[i]);
       feed_messages_until(batch_[i].stamp_ns);
       pipeline_.feed(batch_[i]);
       if (record_) (void)channels_.recorded.push(batch_[i]);  // a full ring is counted by the ring
@@ -34,11 +37,25 @@ bool LiveLoop::tick() noexcept {
     }
   }
   if (live_clock_ && drained) {
-    feed_messages_until(before_ns - kBehindClock_ns);
-    pipeline_.core().advance(before_ns - kBehindClock_ns);
+    declared_ns_ = std::max(declared_ns_, (before_ns + clock_shift_ns_ - kBehindClock_ns) / 1000 * 1000);
+    feed_messages_until(declared_ns_);
+    pipeline_.core().advance(declared_ns_);
     hand_over();
   }
   return bus_.state() != BusState::ended;
+}
+
+// A frame from a time that was already declared silent (the machine stood still between stamp and socket) counts as of the
+// end of that silence: dropping it would be a decision that the recording cannot repeat. A frame from much earlier means
+// that the host's clock was set back: the core drops it and says so, and data time goes on from where it was.
+void LiveLoop::place_in_time(CanFrame& frame) noexcept {
+  frame.stamp_ns += clock_shift_ns_;
+  const std::int64_t late_ns = declared_ns_ - frame.stamp_ns;
+  if (late_ns >= kClockStep_ns) {
+    clock_shift_ns_ += late_ns;
+  } else if (late_ns > 0) {
+    frame.stamp_ns = declared_ns_;
+  }
 }
 
 void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {

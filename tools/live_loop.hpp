@@ -40,6 +40,7 @@ class LiveLoop {
   bool tick() noexcept;
 
  private:
+  void place_in_time(CanFrame& frame) noexcept;
   void feed_messages_until(std::int64_t stamp_ns) noexcept;
   void hand_over() noexcept;
 
@@ -50,6 +51,8 @@ class LiveLoop {
   std::array<CanFrame, 64> batch_{};
   RobotMessage waiting_{};
   bool has_waiting_ = false;
+  std::int64_t declared_ns_ = 0;     // up to here data time has been moved on in silence
+  std::int64_t clock_shift_ns_ = 0;  // added to the clock and the stamps after the host's clock was set back
 };
 
 }  // namespace stillcut

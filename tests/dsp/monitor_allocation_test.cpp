@@ -1,7 +1,6 @@
 // Once built, the monitor takes nothing from the heap.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <new>
 
@@ -14,14 +13,18 @@ thread_local long allocations = 0;
 
 }  // namespace
 
-// Replacing operator new sees every container and std:: allocation; malloc itself stays with the sanitizers.
-void* operator new(std::size_t size) {
+// Replacing operator new sees every container and every std:: allocation; malloc itself stays with the sanitizers. Not
+// inlined, so that the compiler takes the pair for what it replaces.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   if (counting) ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  return std::malloc(size == 0 ? 1 : size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace stillcut {
 namespace {

@@ -52,15 +52,15 @@ class Bench {
   }
   [[nodiscard]] Compensator& compensator() { return compensator_; }
   [[nodiscard]] int releases() const {
-    return static_cast<int>(std::count_if(corrections.begin(), corrections.end(), [](const Correction& c) {
-      return c.kind == CorrectionKind::release;
-    }));
+    return static_cast<int>(std::count_if(corrections.begin(), corrections.end(),
+                                          [](const Correction& c) { return c.kind == CorrectionKind::release; }));
   }
   [[nodiscard]] std::vector<double> targets_rpm() const {
     std::vector<double> targets;
     for (const Correction& c : corrections) {
       if (c.kind != CorrectionKind::spindle_speed) continue;
-      if (targets.empty() || targets.back() != c.spindle_speed_target_rpm) targets.push_back(c.spindle_speed_target_rpm);
+      if (targets.empty() || targets.back() != c.spindle_speed_target_rpm)
+        targets.push_back(c.spindle_speed_target_rpm);
     }
     return targets;
   }

@@ -191,7 +191,7 @@ TEST_F(RandomCases, WhereNothingMayBeChosenItSaysSo) {
 
 TEST(SpeedChoice, QuestionsWithoutAnAnswerAreToldNotComputed) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
-  const SpeedQuestion good{750.0,   2,  rpm_to_rad_s(9000), 1e-3, {rpm_to_rad_s(6000), rpm_to_rad_s(12000), 300, 3000},
+  const SpeedQuestion good{750.0,   2, rpm_to_rad_s(9000), 1e-3, {rpm_to_rad_s(6000), rpm_to_rad_s(12000), 300, 3000},
                            nullptr, {}};
   ASSERT_TRUE(choose_speed(good).found);
   std::vector<SpeedQuestion> bad(11, good);

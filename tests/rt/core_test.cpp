@@ -1,0 +1,339 @@
+#include "rt/core.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/dsp/synthetic_cut.hpp"
+#include "tests/rt/monitor_script.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// Replacing operator new sees every container and std:: allocation; malloc itself stays with the sanitizers.
+void* operator new(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  if (void* memory = std::malloc(std::max<std::size_t>(size, 1))) return memory;
+  throw std::bad_alloc{};
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace stillcut {
+namespace {
+
+constexpr std::int64_t kStart = kSyntheticOrigin_ns;
+
+SyntheticCut chattering_cut() {
+  SyntheticCut cut;
+  cut.rate_hz = 10000.0;
+  cut.axes = 1;
+  cut.duration_s = 2.5;
+  cut.speed_rpm = [](double) { return 9000.0; };
+  cut.depth = [](double t) { return t > 0.4 && t < 2.2 ? 1.0 : 0.0; };
+  cut.chatter.frequency_hz = 717.0;
+  cut.chatter.start_s = 1.2;
+  return cut;
+}
+
+CoreSettings settings_of(const SyntheticCut& cut, RuntimeMode mode = RuntimeMode::shadow) {
+  CoreSettings settings;
+  settings.monitor = monitor_settings(cut);
+  settings.compensator = {mode, cut.teeth, spindle_6000_to_12000(), 0.05};
+  settings.axial_depth = 1e-3;
+  settings.nominal_speed = rpm_to_rad_s(9000);
+  return settings;
+}
+
+void write(std::ostream& out, const Output& output) {
+  out << std::hexfloat;
+  if (output.type == Output::Type::event) {
+    const Event& e = output.event;
+    out << "event " << e.stamp_ns << ' ' << int(e.type) << ' ' << int(e.kind) << ' ' << e.frequency_hz << ' '
+        << e.indicator << ' ' << e.spindle_speed_rpm << ' ' << e.note.data() << '\n';
+  } else if (output.type == Output::Type::correction) {
+    const Correction& c = output.correction;
+    out << "correction " << c.stamp_ns << ' ' << c.sequence << ' ' << c.valid_for_ms << ' ' << int(c.mode) << ' '
+        << int(c.kind) << ' ' << c.spindle_speed_rpm << ' ' << c.spindle_speed_target_rpm << ' ' << c.feed_override
+        << ' ' << c.feed_direction << ' ' << c.chatter_frequency_hz << ' ' << c.predicted_margin_before << ' '
+        << c.predicted_margin_after << ' ' << c.limited_by << ' ' << int(c.confidence_percent) << ' ' << c.reason.data()
+        << '\n';
+  } else {
+    const Status& s = output.status;
+    out << "status " << s.stamp_ns << ' ' << int(s.state) << ' ' << int(s.mode) << ' ' << s.spindle_speed_rpm << ' '
+        << s.indicator << ' ' << s.margin << ' ' << s.chatter_frequency_hz << ' ' << s.frames << ' ' << s.frames_lost
+        << ' ' << s.lobes_stamp_ns << '\n';
+  }
+}
+
+// A core that keeps what it says.
+struct Heard {
+  explicit Heard(const CoreSettings& settings) : core{settings} {}
+
+  void listen() {
+    for (const Output& output : core.outputs()) {
+      if (output.type == Output::Type::event) events.push_back(output.event);
+      if (output.type == Output::Type::status) statuses.push_back(output.status);
+      if (output.type == Output::Type::correction) corrections.push_back(output.correction);
+      write(all, output);
+    }
+    core.clear_outputs();
+  }
+  bool frame(std::int64_t stamp_ns) {
+    const bool accepted = core.accept_frame(stamp_ns);
+    listen();
+    return accepted;
+  }
+  void play(const SyntheticLog& log, const std::function<void(std::int64_t)>& before_each = {}) {
+    std::size_t next_speed = 0;
+    for (const SampleBlock& block : log.blocks) {
+      for (; next_speed < log.speeds.size() && log.speeds[next_speed].stamp_ns <= block.stamp_ns; ++next_speed) {
+        if (core.accept_frame(log.speeds[next_speed].stamp_ns)) core.add_speed(log.speeds[next_speed]);
+      }
+      if (before_each) before_each(block.stamp_ns);
+      if (core.accept_frame(block.stamp_ns)) core.add_samples(block);
+      listen();
+    }
+  }
+
+  Core core;
+  std::vector<Event> events;
+  std::vector<Status> statuses;
+  std::vector<Correction> corrections;
+  std::ostringstream all;
+};
+
+LobeDiagram dated(std::int64_t usable_from_ns, std::int64_t posture_ns, double limit_mm = 0.5) {
+  LobeDiagram diagram = diagram_of({limit_mm, limit_mm, limit_mm}, spindle_6000_to_12000());
+  diagram.usable_from_ns = usable_from_ns;
+  diagram.posture_stamp_ns = posture_ns;
+  return diagram;
+}
+
+RobotState state_at(std::int64_t stamp_ns) {
+  RobotState state;
+  state.stamp_ns = stamp_ns;
+  state.axial_depth = std::nan("");
+  return state;
+}
+
+TEST(Core, ChatterBecomesOneOnsetAndACorrectionInStep) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.play(record(chattering_cut()));
+  const std::vector<Event> onsets = only(heard.events, EventType::chatter_onset);
+  ASSERT_EQ(onsets.size(), 1U);
+  EXPECT_NEAR(onsets[0].frequency_hz, 717.0, 3.0);
+  const std::vector<Event> corrections = only(heard.events, EventType::correction);
+  ASSERT_FALSE(corrections.empty());
+  const double k = 60.0 * corrections[0].frequency_hz / (2 * corrections[0].spindle_speed_rpm);
+  EXPECT_NEAR(k, std::round(k), 1e-9);
+  ASSERT_FALSE(heard.corrections.empty());
+  EXPECT_EQ(heard.corrections.back().kind, CorrectionKind::release);
+  for (const Correction& c : heard.corrections) EXPECT_EQ(c.mode, RuntimeMode::shadow);
+}
+
+TEST(Core, SameInputsGiveTheSameOutputsToTheLastBit) {
+  const SyntheticLog log = record(chattering_cut());
+  std::string first;
+  for (int run = 0; run < 2; ++run) {
+    Heard heard{settings_of(chattering_cut())};
+    heard.core.add_lobes(dated(0, 0));
+    heard.play(log);
+    if (run == 0) first = heard.all.str();
+    EXPECT_EQ(heard.all.str(), first);
+    EXPECT_NE(first.find("correction"), std::string::npos);
+  }
+}
+
+TEST(Core, AllocatesNothingAfterConstruction) {
+  const SyntheticLog log = record(chattering_cut());
+  Core core{settings_of(chattering_cut(), RuntimeMode::active)};
+  const LobeDiagram diagram = dated(0, 0);
+  const long before = allocations.load();
+  core.add_lobes(diagram);
+  std::size_t next_speed = 0, outputs = 0;
+  for (const SampleBlock& block : log.blocks) {
+    for (; next_speed < log.speeds.size() && log.speeds[next_speed].stamp_ns <= block.stamp_ns; ++next_speed) {
+      if (core.accept_frame(log.speeds[next_speed].stamp_ns)) core.add_speed(log.speeds[next_speed]);
+    }
+    RobotState state = state_at(block.stamp_ns);
+    state.spindle_speed_rpm = 9000.0;
+    core.add_robot_state(state);
+    if (core.accept_frame(block.stamp_ns)) core.add_samples(block);
+    for (const Output& output : core.outputs()) {
+      if (output.type == Output::Type::correction)
+        core.add_ack({block.stamp_ns, output.correction.sequence, true, 0, 1});
+    }
+    outputs += core.outputs().size();
+    core.clear_outputs();
+  }
+  core.accept_frame(kStart);  // goes back
+  core.add_bus_error(0x20000040, 0);
+  core.advance(log.blocks.back().stamp_ns + 3 * kSecond);
+  EXPECT_EQ(allocations.load(), before);
+  EXPECT_GT(outputs, 50U);
+  EXPECT_GT(core.outputs().size(), 20U);
+}
+
+TEST(Core, AStampThatGoesBackIsOneFaultARunAndDropsTheFrame) {
+  Heard heard{settings_of(chattering_cut())};
+  EXPECT_TRUE(heard.frame(kStart));
+  EXPECT_TRUE(heard.frame(kStart + 10 * kMillisecond));
+  EXPECT_FALSE(heard.frame(kStart + 9 * kMillisecond));
+  EXPECT_FALSE(heard.frame(kStart + 8 * kMillisecond));
+  EXPECT_EQ(only(heard.events, EventType::fault).size(), 1U);
+  EXPECT_TRUE(heard.frame(kStart + 10 * kMillisecond));  // the same stamp does not go back
+  EXPECT_FALSE(heard.frame(kStart));
+  const std::vector<Event> faults = only(heard.events, EventType::fault);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[1].stamp_ns, kStart + 10 * kMillisecond);
+  EXPECT_STREQ(faults[1].note.data(), "stamp goes back by 0.010000 s; frame dropped");
+  EXPECT_EQ(heard.core.counters().frames, 3);
+  EXPECT_EQ(heard.core.counters().frames_out_of_order, 3);
+}
+
+TEST(Core, ALogMayBeginAtTimeZero) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.frame(0);
+  heard.frame(10 * kMillisecond);
+  EXPECT_EQ(heard.core.origin_ns(), 0);
+  heard.frame(150 * kMillisecond);
+  ASSERT_EQ(heard.statuses.size(), 1U);
+  EXPECT_EQ(heard.statuses[0].stamp_ns, 100 * kMillisecond);
+}
+
+TEST(Core, StatusComesTenTimesASecondOfDataTimeAlsoInSilence) {
+  Heard heard{settings_of(chattering_cut())};
+  SyntheticCut cut = chattering_cut();
+  cut.duration_s = 1.0;
+  heard.play(record(cut));
+  heard.core.advance(kStart + 3 * kSecond + 50 * kMillisecond);
+  heard.listen();
+  ASSERT_EQ(heard.statuses.size(), 30U);
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(heard.statuses[i].stamp_ns - heard.core.origin_ns(),
+              static_cast<std::int64_t>(i + 1) * 100 * kMillisecond);
+  }
+  EXPECT_EQ(heard.statuses.back().state, State::cannot_tell);
+  EXPECT_EQ(heard.statuses.back().mode, RuntimeMode::shadow);
+  EXPECT_NEAR(heard.statuses[8].spindle_speed_rpm, 9000.0, 1.0);
+}
+
+TEST(Core, SilenceIsToldAlikeInOneStepOrInMany) {
+  SyntheticCut cut = chattering_cut();
+  cut.duration_s = 1.8;  // breaks off in the middle of chatter
+  const SyntheticLog log = record(cut);
+  std::mt19937_64 random{7};
+  std::string one;
+  for (int run = 0; run < 20; ++run) {
+    Heard heard{settings_of(cut)};
+    heard.play(log);
+    const std::int64_t from = log.blocks.back().stamp_ns, to = from + 4 * kSecond;
+    heard.core.add_lobes(dated(from + 1'234'567'890, from));
+    if (run > 0) {
+      std::uniform_int_distribution<std::int64_t> step(1, run * 20 * kMillisecond);
+      for (std::int64_t now = from; now < to; now += step(random)) {
+        heard.core.advance(now);
+        heard.listen();
+      }
+    }
+    heard.core.advance(to);
+    heard.listen();
+    heard.frame(to + kMillisecond);
+    if (run == 0) one = heard.all.str();
+    ASSERT_EQ(heard.all.str(), one) << "steps of up to " << run * 20 << " ms";
+    EXPECT_EQ(heard.corrections.back().kind, CorrectionKind::release);
+    EXPECT_EQ(heard.core.view().state, State::cannot_tell);
+  }
+}
+
+TEST(Core, LobesComeIntoUseWhenDue) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.frame(kStart);
+  EXPECT_EQ(heard.core.lobes(), nullptr);
+  heard.core.add_lobes(dated(kStart + kSecond, kStart));
+  heard.frame(kStart + kSecond - 1);
+  EXPECT_EQ(heard.core.lobes(), nullptr);
+  heard.frame(kStart + kSecond);
+  ASSERT_NE(heard.core.lobes(), nullptr);
+  EXPECT_EQ(heard.core.lobes()->posture_stamp_ns, kStart);
+}
+
+// A new diagram comes ten times a second, each usable two seconds later: they must not push each other out.
+TEST(Core, ARobotThatMovesOnDoesNotStarveTheLobes) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.frame(kStart);
+  int in_use = 0;
+  for (int i = 1; i <= 100; ++i) {
+    const std::int64_t now = kStart + i * 100 * kMillisecond;
+    heard.core.add_lobes(dated(now + 2 * kSecond, now));
+    heard.frame(now);
+    in_use += heard.core.lobes() != nullptr ? 1 : 0;
+  }
+  EXPECT_GE(in_use, 75);
+}
+
+TEST(Core, LobesOfAnotherPostureCountAsNone) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.core.add_lobes(dated(0, 0));
+  heard.frame(kStart);
+  EXPECT_NE(heard.core.lobes(), nullptr);  // the cell file's posture, as long as no robot tells its own
+  heard.core.add_robot_state(state_at(kStart));
+  EXPECT_EQ(heard.core.lobes(), nullptr);
+  heard.core.add_lobes(dated(kStart, kStart));
+  EXPECT_NE(heard.core.lobes(), nullptr);
+  heard.core.add_robot_state(state_at(kStart + 10 * kSecond));
+  EXPECT_EQ(heard.core.lobes(), nullptr);
+  heard.frame(kStart + 10 * kSecond);
+  EXPECT_TRUE(std::isnan(heard.statuses.back().margin));
+  EXPECT_EQ(heard.statuses.back().lobes_stamp_ns, 0);
+}
+
+TEST(Core, AnInvalidDiagramReplacesAValidOne) {  // the robot has left the measured postures
+  Heard heard{settings_of(chattering_cut())};
+  heard.core.add_lobes(dated(0, 0));
+  heard.frame(kStart);
+  LobeDiagram none = dated(kStart + kSecond, kStart);
+  none.valid = false;
+  heard.core.add_lobes(none);
+  EXPECT_NE(heard.core.lobes(), nullptr);
+  heard.frame(kStart + kSecond);
+  EXPECT_EQ(heard.core.lobes(), nullptr);
+}
+
+TEST(Core, BusOffAndErrorPassiveAreOneFaultEachUntilTheBusIsWell) {
+  constexpr std::uint32_t kErrorFrame = 0x20000000, kBusOff = 0x40, kController = 0x04, kRestarted = 0x100;
+  const SyntheticLog log = record(chattering_cut());
+  Heard heard{settings_of(chattering_cut())};
+  const auto faults = [&] {
+    heard.listen();
+    return only(heard.events, EventType::fault).size();
+  };
+  heard.frame(log.blocks[0].stamp_ns);
+  for (int i = 0; i < 5; ++i) heard.core.add_bus_error(kErrorFrame | kBusOff, 0);
+  EXPECT_EQ(faults(), 1U);
+  for (int i = 0; i < 5; ++i) heard.core.add_bus_error(kErrorFrame | kController, 0x10);
+  EXPECT_EQ(faults(), 2U);
+  heard.core.add_bus_error(kErrorFrame | kController, 0x04);  // a warning only
+  heard.core.add_bus_error(kErrorFrame | 0x08, 0xFF);         // a protocol error of one frame
+  EXPECT_EQ(faults(), 2U);
+  heard.core.add_samples(log.blocks[0]);  // off no longer
+  heard.core.add_bus_error(kErrorFrame | kBusOff, 0);
+  EXPECT_EQ(faults(), 3U);
+  heard.core.add_bus_error(kErrorFrame | kRestarted, 0);
+  heard.core.add_bus_error(kErrorFrame | kBusOff, 0);
+  EXPECT_EQ(faults(), 4U);
+}
+
+}  // namespace
+}  // namespace stillcut
