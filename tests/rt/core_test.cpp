@@ -2,130 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <new>
 #include <random>
-#include <sstream>
 #include <string>
-#include <vector>
 
-#include "tests/dsp/synthetic_cut.hpp"
-#include "tests/rt/monitor_script.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Replacing operator new sees every container and std:: allocation; malloc itself stays with the sanitizers.
-void* operator new(std::size_t size) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  if (void* memory = std::malloc(std::max<std::size_t>(size, 1))) return memory;
-  throw std::bad_alloc{};
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/rt/core_script.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr std::int64_t kStart = kSyntheticOrigin_ns;
-
-SyntheticCut chattering_cut() {
-  SyntheticCut cut;
-  cut.rate_hz = 10000.0;
-  cut.axes = 1;
-  cut.duration_s = 2.5;
-  cut.speed_rpm = [](double) { return 9000.0; };
-  cut.depth = [](double t) { return t > 0.4 && t < 2.2 ? 1.0 : 0.0; };
-  cut.chatter.frequency_hz = 717.0;
-  cut.chatter.start_s = 1.2;
-  return cut;
-}
-
-CoreSettings settings_of(const SyntheticCut& cut, RuntimeMode mode = RuntimeMode::shadow) {
-  CoreSettings settings;
-  settings.monitor = monitor_settings(cut);
-  settings.compensator = {mode, cut.teeth, spindle_6000_to_12000(), 0.05};
-  settings.axial_depth = 1e-3;
-  settings.nominal_speed = rpm_to_rad_s(9000);
-  return settings;
-}
-
-void write(std::ostream& out, const Output& output) {
-  out << std::hexfloat;
-  if (output.type == Output::Type::event) {
-    const Event& e = output.event;
-    out << "event " << e.stamp_ns << ' ' << int(e.type) << ' ' << int(e.kind) << ' ' << e.frequency_hz << ' '
-        << e.indicator << ' ' << e.spindle_speed_rpm << ' ' << e.note.data() << '\n';
-  } else if (output.type == Output::Type::correction) {
-    const Correction& c = output.correction;
-    out << "correction " << c.stamp_ns << ' ' << c.sequence << ' ' << c.valid_for_ms << ' ' << int(c.mode) << ' '
-        << int(c.kind) << ' ' << c.spindle_speed_rpm << ' ' << c.spindle_speed_target_rpm << ' ' << c.feed_override
-        << ' ' << c.feed_direction << ' ' << c.chatter_frequency_hz << ' ' << c.predicted_margin_before << ' '
-        << c.predicted_margin_after << ' ' << c.limited_by << ' ' << int(c.confidence_percent) << ' ' << c.reason.data()
-        << '\n';
-  } else {
-    const Status& s = output.status;
-    out << "status " << s.stamp_ns << ' ' << int(s.state) << ' ' << int(s.mode) << ' ' << s.spindle_speed_rpm << ' '
-        << s.indicator << ' ' << s.margin << ' ' << s.chatter_frequency_hz << ' ' << s.frames << ' ' << s.frames_lost
-        << ' ' << s.lobes_stamp_ns << '\n';
-  }
-}
-
-// A core that keeps what it says.
-struct Heard {
-  explicit Heard(const CoreSettings& settings) : core{settings} {}
-
-  void listen() {
-    for (const Output& output : core.outputs()) {
-      if (output.type == Output::Type::event) events.push_back(output.event);
-      if (output.type == Output::Type::status) statuses.push_back(output.status);
-      if (output.type == Output::Type::correction) corrections.push_back(output.correction);
-      write(all, output);
-    }
-    core.clear_outputs();
-  }
-  bool frame(std::int64_t stamp_ns) {
-    const bool accepted = core.accept_frame(stamp_ns);
-    listen();
-    return accepted;
-  }
-  void play(const SyntheticLog& log, const std::function<void(std::int64_t)>& before_each = {}) {
-    std::size_t next_speed = 0;
-    for (const SampleBlock& block : log.blocks) {
-      for (; next_speed < log.speeds.size() && log.speeds[next_speed].stamp_ns <= block.stamp_ns; ++next_speed) {
-        if (core.accept_frame(log.speeds[next_speed].stamp_ns)) core.add_speed(log.speeds[next_speed]);
-      }
-      if (before_each) before_each(block.stamp_ns);
-      if (core.accept_frame(block.stamp_ns)) core.add_samples(block);
-      listen();
-    }
-  }
-
-  Core core;
-  std::vector<Event> events;
-  std::vector<Status> statuses;
-  std::vector<Correction> corrections;
-  std::ostringstream all;
-};
-
-LobeDiagram dated(std::int64_t usable_from_ns, std::int64_t posture_ns, double limit_mm = 0.5) {
-  LobeDiagram diagram = diagram_of({limit_mm, limit_mm, limit_mm}, spindle_6000_to_12000());
-  diagram.usable_from_ns = usable_from_ns;
-  diagram.posture_stamp_ns = posture_ns;
-  return diagram;
-}
-
-RobotState state_at(std::int64_t stamp_ns) {
-  RobotState state;
-  state.stamp_ns = stamp_ns;
-  state.axial_depth = std::nan("");
-  return state;
-}
 
 TEST(Core, ChatterBecomesOneOnsetAndACorrectionInStep) {
   Heard heard{settings_of(chattering_cut())};
@@ -153,36 +37,6 @@ TEST(Core, SameInputsGiveTheSameOutputsToTheLastBit) {
     EXPECT_EQ(heard.all.str(), first);
     EXPECT_NE(first.find("correction"), std::string::npos);
   }
-}
-
-TEST(Core, AllocatesNothingAfterConstruction) {
-  const SyntheticLog log = record(chattering_cut());
-  Core core{settings_of(chattering_cut(), RuntimeMode::active)};
-  const LobeDiagram diagram = dated(0, 0);
-  const long before = allocations.load();
-  core.add_lobes(diagram);
-  std::size_t next_speed = 0, outputs = 0;
-  for (const SampleBlock& block : log.blocks) {
-    for (; next_speed < log.speeds.size() && log.speeds[next_speed].stamp_ns <= block.stamp_ns; ++next_speed) {
-      if (core.accept_frame(log.speeds[next_speed].stamp_ns)) core.add_speed(log.speeds[next_speed]);
-    }
-    RobotState state = state_at(block.stamp_ns);
-    state.spindle_speed_rpm = 9000.0;
-    core.add_robot_state(state);
-    if (core.accept_frame(block.stamp_ns)) core.add_samples(block);
-    for (const Output& output : core.outputs()) {
-      if (output.type == Output::Type::correction)
-        core.add_ack({block.stamp_ns, output.correction.sequence, true, 0, 1});
-    }
-    outputs += core.outputs().size();
-    core.clear_outputs();
-  }
-  core.accept_frame(kStart);  // goes back
-  core.add_bus_error(0x20000040, 0);
-  core.advance(log.blocks.back().stamp_ns + 3 * kSecond);
-  EXPECT_EQ(allocations.load(), before);
-  EXPECT_GT(outputs, 50U);
-  EXPECT_GT(core.outputs().size(), 20U);
 }
 
 TEST(Core, AStampThatGoesBackIsOneFaultARunAndDropsTheFrame) {

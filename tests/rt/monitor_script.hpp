@@ -1,6 +1,9 @@
 // A monitor's view made by hand, for tests of what listens to it.
 #pragma once
 
+#include <cmath>
+#include <vector>
+
 #include "dsp/monitor.hpp"
 #include "models/lobe_diagram.hpp"
 #include "models/machining.hpp"

@@ -1,0 +1,71 @@
+// A compensator at the bench, for tests: stepped in time, its words kept.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "rt/compensator.hpp"
+#include "tests/rt/monitor_script.hpp"
+
+namespace stillcut {
+
+// A compensator with its inputs, stepped every 2 ms as the monitor's hops would; keeps all that it says.
+class Bench {
+ public:
+  explicit Bench(RuntimeMode mode) : compensator_{{mode, 2, spindle_6000_to_12000(), 0.05}} {
+    in.axial_depth = 1e-3;
+    in.nominal_speed = rpm_to_rad_s(9000);
+  }
+
+  void step(MonitorView view) {
+    now_ns += 2 * kMillisecond;
+    view.stamp_ns = now_ns;
+    in.now_ns = now_ns;
+    in.monitor = &view;
+    compensator_.step(in, queue_);
+    for (const Output& output : queue_.items()) {
+      if (output.type == Output::Type::correction) corrections.push_back(output.correction);
+      if (output.type == Output::Type::event) events.push_back(output.event);
+    }
+    queue_.clear();
+  }
+  void run(double seconds, const MonitorView& view) {
+    for (const std::int64_t end = now_ns + static_cast<std::int64_t>(seconds * 1e9); now_ns < end;) step(view);
+  }
+  // The same with a controller that says yes to every message.
+  void run_acknowledged(double seconds, const MonitorView& view) {
+    for (const std::int64_t end = now_ns + static_cast<std::int64_t>(seconds * 1e9); now_ns < end;) {
+      step(view);
+      acknowledge(true);
+    }
+  }
+  void acknowledge(bool accepted) {
+    if (corrections.empty()) return;
+    compensator_.acknowledge({now_ns, corrections.back().sequence, accepted, 0.0, 1.0});
+  }
+  [[nodiscard]] Compensator& compensator() { return compensator_; }
+  [[nodiscard]] int releases() const {
+    return static_cast<int>(std::count_if(corrections.begin(), corrections.end(),
+                                          [](const Correction& c) { return c.kind == CorrectionKind::release; }));
+  }
+  [[nodiscard]] std::vector<double> targets_rpm() const {
+    std::vector<double> targets;
+    for (const Correction& c : corrections) {
+      if (c.kind != CorrectionKind::spindle_speed) continue;
+      if (targets.empty() || targets.back() != c.spindle_speed_target_rpm)
+        targets.push_back(c.spindle_speed_target_rpm);
+    }
+    return targets;
+  }
+
+  CompensatorInputs in;
+  std::int64_t now_ns = 1'700'000'000 * kSecond;
+  std::vector<Correction> corrections;
+  std::vector<Event> events;
+
+ private:
+  Compensator compensator_;
+  OutputQueue queue_;
+};
+
+}  // namespace stillcut

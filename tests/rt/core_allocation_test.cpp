@@ -1,0 +1,65 @@
+// Once built, the core takes nothing from the heap.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "tests/rt/core_script.hpp"
+
+namespace {
+
+thread_local bool counting = false;
+thread_local long allocations = 0;
+
+}  // namespace
+
+// Replacing operator new sees every container and every std:: allocation; malloc itself stays with the sanitizers. Not
+// inlined, so that the compiler takes the pair for what it replaces.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (counting) ++allocations;
+  return std::malloc(size == 0 ? 1 : size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace stillcut {
+namespace {
+
+TEST(Core, AllocatesNothingAfterConstruction) {
+  const SyntheticLog log = record(chattering_cut());
+  Core core{settings_of(chattering_cut(), RuntimeMode::active)};
+  const LobeDiagram diagram = dated(0, 0);
+  allocations = 0;
+  counting = true;
+  core.add_lobes(diagram);
+  std::size_t next_speed = 0, outputs = 0;
+  for (const SampleBlock& block : log.blocks) {
+    for (; next_speed < log.speeds.size() && log.speeds[next_speed].stamp_ns <= block.stamp_ns; ++next_speed) {
+      if (core.accept_frame(log.speeds[next_speed].stamp_ns)) core.add_speed(log.speeds[next_speed]);
+    }
+    RobotState state = state_at(block.stamp_ns);
+    state.spindle_speed_rpm = 9000.0;
+    core.add_robot_state(state);
+    if (core.accept_frame(block.stamp_ns)) core.add_samples(block);
+    for (const Output& output : core.outputs()) {
+      if (output.type == Output::Type::correction)
+        core.add_ack({block.stamp_ns, output.correction.sequence, true, 0, 1});
+    }
+    outputs += core.outputs().size();
+    core.clear_outputs();
+  }
+  core.accept_frame(kStart);  // goes back
+  core.add_bus_error(0x20000040, 0);
+  core.advance(log.blocks.back().stamp_ns + 3 * kSecond);
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(outputs, 50U);
+  EXPECT_GT(core.outputs().size(), 20U);
+}
+
+}  // namespace
+}  // namespace stillcut
