@@ -1,9 +1,10 @@
 #include "dsp/line_watch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
-#include <numeric>
 
 #include "dsp/tone.hpp"
 
@@ -87,24 +88,19 @@ void LineWatch::transform() noexcept {
   }
 }
 
-// What all bins have gained together is a change of the cut or a knock, not a line: the mean of power over floor, each
-// bin capped so that a line cannot raise it, unless most of them are above the cap.
+// What all bins have gained together is a change of the cut or a knock, not a line: the geometric mean of power over
+// floor, in which a few lines, however loud, count little. The logarithm is read off the bits of the float (linear
+// between powers of two, at most 6 % off), so this costs an addition a bin; noise alone, with its exponential power,
+// gives 1.
 float LineWatch::common_rise() const noexcept {
-  constexpr int kLanes = 8;  // sums that do not wait for each other
-  const int count = last_ - first_ + 1;
-  const float* const s = over_floor_.data() + first_;
-  float mean = 0.0F;
-  for (float cap = 6.0F; cap < 1e6F; cap *= 4.0F) {
-    std::array<float, kLanes> sums{};
-    int b = 0;
-    for (; b + kLanes <= count; b += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) sums[lane] += s[b + lane] < cap ? s[b + lane] : cap;
-    }
-    for (; b < count; ++b) sums[0] += std::min(s[b], cap);
-    mean = std::accumulate(sums.begin(), sums.end(), 0.0F) / static_cast<float>(count);
-    if (mean < 0.5F * cap) break;
-  }
-  return mean;
+  constexpr float kBitsAnOctave = 8388608.0F;  // 2^23
+  constexpr float kExponentOfOne = 127.0F;
+  constexpr float kMeanOfTheBend = 0.0573F;  // mean of log2(1 + m) - m over the mantissas
+  constexpr float kNoiseMean = 0.8327F;      // minus the mean of log2 of an exponential of mean 1
+  std::int64_t sum = 0;
+  for (int b = first_; b <= last_; ++b) sum += std::bit_cast<std::int32_t>(over_floor_[b]);
+  const float mean = static_cast<float>(sum) / static_cast<float>(last_ - first_ + 1);
+  return std::exp2(mean / kBitsAnOctave - kExponentOfOne + kMeanOfTheBend + kNoiseMean);
 }
 
 void LineWatch::judge() noexcept {
@@ -123,7 +119,7 @@ void LineWatch::judge() noexcept {
     for (int b = first_; b <= last_; ++b)
       over_floor[b] = power[b] / (floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor);
     const float common = std::max(1.0F, common_rise());
-    const float per_common = 1.0F / common, highest = clip * common;
+    const float per_common = 1.0F / common, highest = floor_hops_ < kHopsToLearn ? HUGE_VALF : clip;
     float* const s = newest.data();
     for (int b = first_; b <= last_; ++b) {
       const float f = floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor;
@@ -171,7 +167,7 @@ double LineWatch::ratio_at(double frequency_hz) const noexcept {
   return std::max({ratio_[b - 1], ratio_[b], ratio_[b + 1]});
 }
 
-void LineWatch::relearn_floor() noexcept { floor_hops_ = std::min(floor_hops_, kHopsToLearn / 4); }
+void LineWatch::relearn_floor() noexcept { floor_hops_ = 0; }
 
 void LineWatch::clear_window() noexcept {
   for (int a = 0; a < axes_; ++a) std::fill(residual_[a].begin(), residual_[a].end(), 0.0F);

@@ -36,9 +36,17 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
   spindle_ = require(cell, cell.spindle, "spindle");
   map_ = read_dynamics_map(dynamics.map);
   interpolation_ = {.modal = dynamics.modal, .power = dynamics.power};
+  if (dynamics.posture.empty()) {
+    if (map_.postures.size() != 1) {
+      throw InputError(cell_file_, 0,
+                       "dynamics.posture: is missing; name one of the map's postures, for example \"" +
+                           map_.postures.front().id + "\"");
+    }
+    posture_ = map_.postures.front();
+    return;
+  }
   try {
-    posture_ = dynamics.posture.empty() && map_.postures.size() == 1 ? map_.postures.front()
-                                                                     : find_posture(map_, dynamics.posture);
+    posture_ = find_posture(map_, dynamics.posture);
   } catch (const std::invalid_argument& error) {
     throw InputError(cell_file_, 0, std::string("dynamics.posture: ") + error.what());
   }

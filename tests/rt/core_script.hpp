@@ -24,6 +24,7 @@ inline SyntheticCut chattering_cut() {
   cut.depth = [](double t) { return t > 0.4 && t < 2.0 ? 1.0 : 0.0; };
   cut.chatter.frequency_hz = 717.0;
   cut.chatter.start_s = 1.2;
+  cut.chatter.stop_s = 1.9;
   return cut;
 }
 

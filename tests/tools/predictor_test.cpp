@@ -1,0 +1,101 @@
+#include "tools/predictor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/files/dynamics_map_file.hpp"
+#include "tests/tools/run_program.hpp"
+#include "tools/pipeline.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000, kNow = 1'700'000'000 * kSecond;
+
+Cell demo_cell() { return read_cell(EXAMPLES "/demo-cell/cell.toml", {.bus = false}); }
+
+// A robot at the posture that the demo cell names.
+RobotState at_home(const Cell& cell) {
+  RobotState state;
+  state.stamp_ns = kNow;
+  const DynamicsMap map = read_dynamics_map(cell.dynamics->map);
+  const Posture home = find_posture(map, cell.dynamics->posture);
+  state.joint_position = home.joints;
+  state.tcp_position = home.position;
+  state.feed_direction = cell.cut->feed_direction;
+  state.axial_depth = state.radial_depth = std::nan("");
+  return state;
+}
+
+TEST(Predictor, NominalDiagramSpansTheSpindleAndIsUsableAtOnce) {
+  const Cell cell = demo_cell();
+  const LobeDiagram diagram = Predictor{cell}.nominal();
+  ASSERT_TRUE(diagram.valid);
+  EXPECT_EQ(diagram.usable_from_ns, 0);
+  EXPECT_EQ(diagram.posture_stamp_ns, 0);
+  EXPECT_NEAR(diagram.points[0].speed, cell.spindle->min_speed, 1e-9);
+  EXPECT_NEAR(diagram.points[diagram.point_count - 1].speed, cell.spindle->max_speed, 1e-9);
+  EXPECT_GT(diagram.mode_count, 0);
+}
+
+TEST(Predictor, ARobotAtTheNominalPostureGetsTheNominalLobesDated) {
+  const Cell cell = demo_cell();
+  Predictor predictor{cell};
+  const LobeDiagram nominal = predictor.nominal();
+  const auto diagram = predictor.at(at_home(cell));
+  ASSERT_TRUE(diagram.has_value());
+  EXPECT_EQ(diagram->posture_stamp_ns, kNow);
+  EXPECT_GT(diagram->usable_from_ns, kNow);
+  ASSERT_EQ(diagram->point_count, nominal.point_count);
+  for (int i = 0; i < nominal.point_count; ++i)
+    EXPECT_EQ(diagram->points[i].depth_limit, nominal.points[i].depth_limit);
+}
+
+TEST(Predictor, WhatTheRobotTellsOfItsCutCounts) {
+  const Cell cell = demo_cell();
+  Predictor predictor{cell};
+  const LobeDiagram nominal = predictor.nominal();
+  RobotState slot = at_home(cell);
+  slot.milling = Milling::slot;
+  slot.radial_depth = cell.tool->diameter;
+  const auto diagram = predictor.at(slot);
+  ASSERT_TRUE(diagram.has_value());
+  int different = 0;
+  for (int i = 0; i < nominal.point_count; ++i) {
+    different += diagram->points[i].depth_limit != nominal.points[i].depth_limit ? 1 : 0;
+  }
+  EXPECT_GT(different, nominal.point_count / 2);
+}
+
+TEST(Predictor, AnImmersionThatCannotBeGivesNoDiagram) {
+  const Cell cell = demo_cell();
+  Predictor predictor{cell};
+  RobotState wide = at_home(cell);
+  wide.radial_depth = 3.0 * cell.tool->diameter;
+  EXPECT_FALSE(predictor.at(wide).has_value());
+}
+
+TEST(PredictionPace, TakesTheFirstStateOfEachSecond) {
+  PredictionPace pace;
+  int taken = 0;
+  for (int i = 0; i < 1000; ++i) {  // ten seconds at 100 Hz, beginning within a second
+    RobotState state;
+    state.stamp_ns = kNow + kSecond / 2 + i * kSecond / 100;
+    taken += pace.due(state) ? 1 : 0;
+  }
+  EXPECT_EQ(taken, 11);
+}
+
+TEST(Pipeline, AccelerometersAreCheckedBeforeTheMonitorIsBuilt) {
+  const DemoCell folder;
+  folder.change("sample_rate_hz = 25600", "sample_rate_hz = 499.9");
+  const Cell cell = read_cell(folder.path() / "cell.toml", {.bus = false});
+  EXPECT_THROW(Pipeline{cell}, InputError);
+  Cell none = demo_cell();
+  none.can->accelerometers.clear();
+  EXPECT_THROW(core_settings(none), InputError);
+}
+
+}  // namespace
+}  // namespace stillcut
