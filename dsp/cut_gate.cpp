@@ -40,7 +40,9 @@ CutGate::Change CutGate::step(double level, double speed, double step_s) noexcep
   }
   if (air_ <= 0.0) return Change::none;
 
-  const bool beyond = was_cutting ? level < settings_.exit_ratio * air_ : level > settings_.entry_ratio * air_;
+  const bool loud = level > settings_.entry_ratio * air_;
+  level_tells_ = was_cutting && (level_tells_ || loud);
+  const bool beyond = was_cutting ? level_tells_ && level < settings_.exit_ratio * air_ : loud;
   beyond_s_ = beyond ? beyond_s_ + step_s : 0.0;
   if (beyond_s_ >= kMustLast_s) {
     beyond_s_ = revolutions_ = 0.0;
@@ -57,6 +59,13 @@ CutGate::Change CutGate::contact() noexcept {
   state_ = State::cut;
   beyond_s_ = revolutions_ = 0.0;
   return was_cutting ? Change::none : Change::entered;
+}
+
+CutGate::Change CutGate::contact_over() noexcept {
+  if (state_ != State::cut || level_tells_) return Change::none;
+  state_ = State::exit;
+  beyond_s_ = revolutions_ = 0.0;
+  return Change::left;
 }
 
 }  // namespace stillcut

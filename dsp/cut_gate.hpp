@@ -28,6 +28,8 @@ class CutGate {
 
   // Chatter was heard: the tool must be in the cut, whatever the level says.
   Change contact() noexcept;
+  // That chatter is over: where nothing but chatter told of the cut, so is the cut.
+  Change contact_over() noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] double air_level() const noexcept { return air_; }
@@ -38,6 +40,7 @@ class CutGate {
  private:
   CutGateSettings settings_;
   State state_ = State::idle;
+  bool level_tells_ = false;  // the level has been at a cutting level in this cut, so its fall will tell the exit
   double air_ = 0.0;          // 0: not heard yet
   double heard_speed_ = 0.0;  // to which the air level belongs
   double revolutions_ = 0.0;  // since the state was entered

@@ -11,6 +11,7 @@
 namespace stillcut {
 namespace {
 
+constexpr double kNearMode = 0.15;       // of the mode's frequency: where its chatter may stand
 constexpr float kTiniestFloor = 1e-12F;  // (m/s^2)^2: a sensor at perfect rest must not divide by nothing
 
 bool smooth(int n) noexcept {
@@ -44,7 +45,8 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       spectrum_(bins_),
       inverse_limit_(bins_),
       ratio_(bins_, 0.0F),
-      over_floor_(bins_, 0.0F) {
+      over_floor_(bins_, 0.0F),
+      near_mode_(bins_, 0) {
   float sum = 0.0F;
   for (int n = 0; n < length_; ++n) {
     window_[n] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * n / length_));
@@ -154,10 +156,38 @@ void LineWatch::find_candidates() noexcept {
     for (int a = 1; a < axes_; ++a) {
       if (power_[a][b] * floor_[axis][b] > power_[axis][b] * floor_[a][b]) axis = a;
     }
-    const auto& p = power_[axis];
-    const double offset =
-        std::clamp(hann_peak_offset(std::sqrt(p[b - 1]), std::sqrt(p[b]), std::sqrt(p[b + 1])), -1.0, 1.0);
-    candidates_[c] = {(b + offset) * bin_hz_, ratio_[b], axis};
+    candidates_[c] = {frequency_of_peak(axis, b), ratio_[b], axis};
+  }
+}
+
+double LineWatch::frequency_of_peak(int axis, int bin) const noexcept {
+  const float* const p = power_[axis].data() + bin;
+  return (bin + std::clamp(hann_peak_offset(std::sqrt(p[-1]), std::sqrt(p[0]), std::sqrt(p[1])), -1.0, 1.0)) * bin_hz_;
+}
+
+LineCandidate LineWatch::loudest_near_modes() const noexcept {
+  float most = 0.0F;
+  int axis = 0, bin = 0;
+  for (int a = 0; a < axes_; ++a) {
+    for (int b = first_ + 1; b < last_; ++b) {
+      if (near_mode_[b] == 0 || power_[a][b] <= most) continue;
+      most = power_[a][b];
+      axis = a;
+      bin = b;
+    }
+  }
+  if (bin == 0) return {};
+  return {frequency_of_peak(axis, bin), std::sqrt(most), axis};
+}
+
+void LineWatch::expose(double frequency_hz) noexcept {
+  constexpr int kLobe = 3;             // bins on either side that a windowed line fills
+  constexpr float kLosesToEnd = 4.0F;  // times the limit that the line now stands above its floor
+  const int at = static_cast<int>(std::lround(frequency_hz / bin_hz_));
+  for (int a = 0; a < axes_; ++a) {
+    for (int b = std::max(first_, at - kLobe); b <= std::min(last_, at + kLobe); ++b) {
+      floor_[a][b] = std::min(floor_[a][b], power_[a][b] * inverse_limit_[b] / kLosesToEnd);
+    }
   }
 }
 
@@ -182,7 +212,10 @@ void LineWatch::set_prior(std::span<const ExpectedMode> modes, double margin) no
   const double by_margin = std::isnan(margin) ? 1.0 : std::clamp(1.0 + 0.5 * margin, 0.7, 1.4);
   for (int b = 0; b < bins_; ++b) {
     double by_mode = 1.0;
+    near_mode_[b] = 0;
     for (const ExpectedMode& mode : modes) {
+      const double distance = std::abs(b * bin_hz_ - mode.frequency_hz) / mode.frequency_hz;
+      if (distance < kNearMode) near_mode_[b] = 1;
       // Chatter stands within some tenths of the mode; the map's own error widens that.
       const double width = mode.frequency_hz * (0.05 + 2.0 * mode.damping_ratio);
       const double away = std::abs(b * bin_hz_ - mode.frequency_hz) / width;

@@ -58,6 +58,13 @@ class LineWatch {
   [[nodiscard]] std::span<const LineCandidate> candidates() const noexcept { return {candidates_.data(), found_}; }
   [[nodiscard]] double largest_ratio() const noexcept { return found_ > 0 ? candidates_[0].ratio : 0.0; }
 
+  // The line of most power near any expected mode, however long it has been there: chatter that was there before the
+  // floor could be learned is part of the floor. Its ratio is the amplitude, in units of the samples; 0: no mode is
+  // expected.
+  [[nodiscard]] LineCandidate loudest_near_modes() const noexcept;
+  // Takes a line out of the floor, so that from now on it stands out until it has lost most of its power.
+  void expose(double frequency_hz) noexcept;
+
   // S over its limit at a frequency, the largest of the bin and its neighbours.
   [[nodiscard]] double ratio_at(double frequency_hz) const noexcept;
 
@@ -94,6 +101,7 @@ class LineWatch {
   [[nodiscard]] float common_rise() const noexcept;
   void judge() noexcept;
   void find_candidates() noexcept;
+  [[nodiscard]] double frequency_of_peak(int axis, int bin) const noexcept;
 
   int axes_, length_, kept_, hop_, bins_, first_, last_;  // lines are sought between bins first_ and last_
   double bin_hz_;
@@ -104,6 +112,7 @@ class LineWatch {
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;
+  std::vector<char> near_mode_;  // per bin
   int begin_ = 0, filled_ = 0, hops_in_window_ = 0, history_at_ = 0, floor_hops_ = 0;
   float power_scale_;
   bool floor_held_ = false;

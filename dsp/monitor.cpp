@@ -10,6 +10,8 @@ namespace stillcut {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLargestStep_hz = 5.0;  // from hop to hop of a chatter line
+constexpr double kOutOfSight_s = 0.06;
 constexpr double kBlindToEnd_s = 0.5;        // chatter out of sight for this long is over as far as can be told
 constexpr double kFilterRevolutions = 16.0;  // memory of the synchronous filter
 constexpr double kLongestFilterMemory_s = 0.25;
@@ -93,8 +95,7 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
       emit(stamp_ns, EventType::cut_entry, ChatterKind::unknown, kNaN, "");
     } else if (change == CutGate::Change::left) {
       if (view_.chatter) end_chatter(stamp_ns, "cut exit");
-      for (Sensor& each : sensors_) each.path.filter().restart();
-      emit(stamp_ns, EventType::cut_exit, ChatterKind::unknown, kNaN, "");
+      leave_cut(stamp_ns);
     }
   }
 
@@ -123,10 +124,15 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
   const LineWatch& watch = path.watch();
   const double bin_hz = path.bin_hz();
   double ratio = watch.ratio_at(view_.chatter_frequency_hz);
+  // The line wanders, but it does not leap: a peak further off is another one, unless this one was out of sight.
+  unseen_s_ += step_s;
+  const double reach_hz = unseen_s_ > kOutOfSight_s ? 1.5 * bin_hz : kLargestStep_hz;
   for (const LineCandidate& candidate : watch.candidates()) {
-    if (std::abs(candidate.frequency_hz - view_.chatter_frequency_hz) > 1.5 * bin_hz) continue;
+    if (candidate.ratio < 1.0 || std::abs(candidate.frequency_hz - view_.chatter_frequency_hz) > 1.5 * bin_hz) continue;
     const Tone tone = analyse_tone(watch.window(candidate.axis), path.sample_rate_hz(), candidate.frequency_hz);
-    if (candidate.ratio < 1.0 || std::abs(tone.frequency_hz - candidate.frequency_hz) > 1.5 * bin_hz) break;
+    if (std::abs(tone.frequency_hz - candidate.frequency_hz) > 1.5 * bin_hz) continue;
+    if (std::abs(tone.frequency_hz - view_.chatter_frequency_hz) > reach_hz) continue;
+    unseen_s_ = 0.0;
     ratio = std::max(ratio, candidate.ratio);
     view_.chatter_frequency_hz = tone.frequency_hz;
     view_.chatter_amplitude = tone.amplitude;
@@ -160,6 +166,12 @@ void Monitor::end_chatter(std::int64_t stamp_ns, const char* why) noexcept {
   view_.chatter_frequency_hz = kNaN;
   view_.chatter_amplitude = 0.0;
   steady_s_ = 0.0;
+  if (gate_.contact_over() == CutGate::Change::left) leave_cut(stamp_ns);
+}
+
+void Monitor::leave_cut(std::int64_t stamp_ns) noexcept {
+  for (Sensor& each : sensors_) each.path.filter().restart();
+  emit(stamp_ns, EventType::cut_exit, ChatterKind::unknown, kNaN, "");
 }
 
 double Monitor::speed_at(std::int64_t stamp_ns) const noexcept {

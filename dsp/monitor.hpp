@@ -82,8 +82,10 @@ class Monitor {
 
   void finish_hop(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   void look_for_onset(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  void look_for_standing_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
   void end_chatter(std::int64_t stamp_ns, const char* why) noexcept;
+  void leave_cut(std::int64_t stamp_ns) noexcept;
   void begin_chatter(std::size_t sensor, std::int64_t stamp_ns, const LineCandidate& candidate,
                      const Tone& tone) noexcept;
   [[nodiscard]] bool speed_confirmed(std::int64_t since_ns) const noexcept;
@@ -115,10 +117,10 @@ class Monitor {
   double steady_s_ = 0.0;  // how long speed and contact have been unchanged
   std::uint32_t speed_fault_ = kNoDoubt;
   std::array<double, kDoubtCount> clear_for_s_{};
-  std::array<Suspect, kMaxSensors> suspect_{};
+  std::array<Suspect, kMaxSensors> suspect_{}, standing_{};
   // The episode of chatter that is open.
   std::size_t chatter_sensor_ = 0;
-  double below_s_ = 0.0, doubt_s_ = 0.0;
+  double below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
   double largest_amplitude_ = 0.0;
   bool faded_ = false;
   int free_hops_ = 0;

@@ -59,6 +59,36 @@ void Monitor::look_for_onset(std::size_t index, std::int64_t stamp_ns) noexcept 
   if (!heard_again && suspect.hops > 0) --suspect.hops;
   if (suspect.hops == 0) suspect.line = Line::nothing;
   view_.indicator = std::sqrt(strongest);
+  look_for_standing_chatter(index, stamp_ns);
+}
+
+// Chatter that grew before a floor could be learned (in the first moments of a recording or of a cut) is part of that
+// floor. It gives itself away by its share of the vibration: a line near a mode, not the spindle's, that holds a tenth
+// of all energy and stands still in phase for longer than a new one has to.
+void Monitor::look_for_standing_chatter(std::size_t index, std::int64_t stamp_ns) noexcept {
+  constexpr double kShareOfEnergy = 0.1;
+  constexpr int kHops = 12;
+  SensorPath& path = sensors_[index].path;
+  Suspect& standing = standing_[index];
+  LineCandidate candidate = path.watch().loudest_near_modes();
+  const bool loud = 0.5 * candidate.ratio * candidate.ratio > kShareOfEnergy * path.level() * path.level();
+  const bool held = gate_.state() != State::air && gate_.state() != State::cut;
+  if (!loud || held || !(candidate.frequency_hz > 0.0)) {
+    standing = {};
+    return;
+  }
+  candidate.ratio = 1.0;
+  const Tone tone = analyse_tone(path.watch().window(candidate.axis), path.sample_rate_hz(), candidate.frequency_hz);
+  Suspect heard = classify(path, candidate, tone);
+  const bool same = heard.line == Line::free && std::abs(heard.frequency_hz - standing.frequency_hz) < path.bin_hz() &&
+                    std::abs(std::remainder(heard.cycles - standing.cycles, 1.0)) < kSteadyCycles;
+  heard.hops = heard.line != Line::free ? 0 : same ? standing.hops + 1 : 1;
+  heard.since_ns = same ? standing.since_ns : stamp_ns;
+  standing = heard;
+  if (standing.hops < kHops || !speed_confirmed(standing.since_ns)) return;
+  path.watch().expose(tone.frequency_hz);
+  suspect_[index] = std::exchange(standing, {});
+  begin_chatter(index, stamp_ns, candidate, tone);
 }
 
 void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const LineCandidate& candidate,
@@ -73,7 +103,7 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   view_.chatter_amplitude = tone.amplitude;
   view_.indicator = std::sqrt(candidate.ratio);
   chatter_sensor_ = index;
-  below_s_ = doubt_s_ = 0.0;
+  below_s_ = doubt_s_ = unseen_s_ = 0.0;
   free_hops_ = 0;
   largest_amplitude_ = tone.amplitude;
   faded_ = false;
@@ -81,7 +111,8 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   const double log_amplitude = 0.5 * std::log(std::max(1.0, candidate.ratio * settings_.watch.limit));
   const double since_s = tone.growth_per_s > 1.0 ? std::min(1.0, log_amplitude / tone.growth_per_s) : 0.0;
   char note[96];
-  std::snprintf(note, sizeof note, "start=%.3f%s", static_cast<double>(stamp_ns - origin_ns_) * 1e-9 - since_s,
+  std::snprintf(note, sizeof note, "start=%.3f%s",
+                std::max(0.0, static_cast<double>(stamp_ns - origin_ns_) * 1e-9 - since_s),
                 line == Line::on_order ? " on a spindle order, not told apart yet" : "");
   emit(stamp_ns, EventType::chatter_onset, view_.kind, view_.chatter_frequency_hz, note);
 }

@@ -9,7 +9,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kMeanMemory_s = 0.03;   // gravity, drift and slow feed force leave the level through this
-constexpr double kLevelMemory_s = 0.03;  // at least; three revolutions where those are longer
+constexpr double kLevelSpan_s = 0.03;    // at least; three revolutions where those are longer
 constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle worth following
 
 }  // namespace
@@ -51,7 +51,6 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
     filter_.set_samples_per_revolution(rate_ * revolution_s);
   }
   const auto mean_gain = static_cast<float>(1.0 / (kMeanMemory_s * rate_));
-  const auto level_gain = static_cast<float>(1.0 / (std::max(kLevelMemory_s, 3.0 * revolution_s) * rate_));
   const double step = std::min(0.5, speed / (2.0 * std::numbers::pi * rate_));  // revolutions a sample
   hop_complete_ = false;
   int i = from;
@@ -71,31 +70,31 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
       if (!std::isfinite(x[a])) continue;
       mean_[a] += mean_gain * (x[a] - mean_[a]);
       const float alternating = x[a] - mean_[a];
-      power_[a] += level_gain * (alternating * alternating - power_[a]);
-      residual_power_[a] += level_gain * (residual[a] * residual[a] - residual_power_[a]);
+      hop_power_ += alternating * alternating;
     }
     hop_complete_ = watch_.push({residual.data(), static_cast<std::size_t>(axes_)});
     ++i;
   }
+  if (hop_complete_) update_level(revolution_s);
   return i;
+}
+
+void SensorPath::update_level(double revolution_s) noexcept {
+  newest_power_ = (newest_power_ + 1) % kLevelHops;
+  powers_[newest_power_] = hop_power_;
+  hop_power_ = 0.0;
+  const double hop_s = watch_.hop_length() / rate_;
+  const double wanted = std::ceil(std::max(kLevelSpan_s, 3.0 * revolution_s) / hop_s);
+  const auto hops = static_cast<std::size_t>(std::min(wanted, double{kLevelHops}));
+  double sum = 0.0;
+  for (std::size_t h = 0; h < hops; ++h) sum += powers_[(newest_power_ + kLevelHops - h) % kLevelHops];
+  level_ = std::sqrt(sum / (static_cast<double>(hops) * watch_.hop_length()));
 }
 
 std::uint32_t SensorPath::doubts() const noexcept {
   std::uint32_t all = kNoDoubt;
   for (int d = 0; d < kDoubtCount; ++d) all |= doubted_until_[d] > samples_ ? 1U << d : 0U;
   return all;
-}
-
-double SensorPath::level() const noexcept {
-  double sum = 0.0;
-  for (int a = 0; a < axes_; ++a) sum += power_[a];
-  return std::sqrt(sum);
-}
-
-double SensorPath::residual_level() const noexcept {
-  double sum = 0.0;
-  for (int a = 0; a < axes_; ++a) sum += residual_power_[a];
-  return std::sqrt(sum);
 }
 
 }  // namespace stillcut

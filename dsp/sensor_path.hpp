@@ -32,9 +32,9 @@ class SensorPath {
   [[nodiscard]] bool hop_complete() const noexcept { return hop_complete_; }
   // Doubts raised by samples that are still in the window.
   [[nodiscard]] std::uint32_t doubts() const noexcept;
-  // Root mean square of the whole (not residual) signal without its mean, over about three revolutions, m/s^2.
-  [[nodiscard]] double level() const noexcept;
-  [[nodiscard]] double residual_level() const noexcept;
+  // Root mean square of the whole (not residual) signal without its mean, all axes together, over the last three
+  // revolutions or 30 ms, m/s^2. A plain mean: it forgets a loud cut as soon as the cut is over.
+  [[nodiscard]] double level() const noexcept { return level_; }
 
   [[nodiscard]] LineWatch& watch() noexcept { return watch_; }
   [[nodiscard]] const LineWatch& watch() const noexcept { return watch_; }
@@ -43,6 +43,9 @@ class SensorPath {
   [[nodiscard]] double bin_hz() const noexcept { return rate_ / watch_.window_length(); }
 
  private:
+  static constexpr std::size_t kLevelHops = 128;
+
+  void update_level(double revolution_s) noexcept;
   void raise(std::uint32_t doubts) noexcept;
 
   double rate_;
@@ -52,7 +55,11 @@ class SensorPath {
   double revolutions_ = 0.0;  // spindle angle, 0..1
   SynchronousFilter filter_;
   LineWatch watch_;
-  std::array<float, kMaxAxes> mean_{}, power_{}, residual_power_{};
+  std::array<float, kMaxAxes> mean_{};
+  double hop_power_ = 0.0;                   // sum of squares in the present hop
+  std::array<double, kLevelHops> powers_{};  // of the last hops, a ring
+  std::size_t newest_power_ = 0;
+  double level_ = 0.0;
   std::int64_t samples_ = 0;                               // processed so far
   std::array<std::int64_t, kDoubtCount> doubted_until_{};  // the sample at which each doubt has left the window
   bool hop_complete_ = false;
