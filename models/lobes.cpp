@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The modes that move most, in rising frequency, as far as the diagram has room.
-void summarise(std::span<const Mode> modes, LobeDiagram& diagram) {
+}  // namespace
+
+void summarise_modes(std::span<const Mode> modes, LobeDiagram& diagram) {
   std::vector<Mode> chosen(modes.begin(), modes.end());
   const auto peak_compliance = [](const Mode& mode) { return 1.0 / (2.0 * mode.damping_ratio * mode.stiffness); };
   std::stable_sort(chosen.begin(), chosen.end(),
@@ -30,8 +31,6 @@ void summarise(std::span<const Mode> modes, LobeDiagram& diagram) {
     return ModeSummary{mode.natural_frequency / kTwoPi, mode.damping_ratio};
   });
 }
-
-}  // namespace
 
 std::vector<double> equally_spaced_speeds(double first, double last, int count) {
   if (count < 1) throw std::invalid_argument("count of speeds: must be at least 1");
@@ -80,7 +79,7 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
   for (std::size_t i = 0; i < limits.size(); ++i) {
     diagram.points[i] = {speeds[i], limits[i].depth, limits[i].chatter_frequency / kTwoPi};
   }
-  summarise(modes, diagram);
+  summarise_modes(modes, diagram);
   diagram.valid = true;
   return diagram;
 }

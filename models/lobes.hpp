@@ -40,6 +40,9 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
                                  const SpindleLimits& spindle, std::span<const Mode> modes,
                                  const LobeSettings& settings = {});
 
+// Fills in the modes that move most, as many as the diagram has room for, in rising frequency.
+void summarise_modes(std::span<const Mode> modes, LobeDiagram& diagram);
+
 // Depth limit at a speed (rad/s): the smaller of the two points beside it, 0 where every depth is unstable, +inf where
 // none is, NaN outside the diagram or without one. Constant time, fit for the loop.
 double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept;

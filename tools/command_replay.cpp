@@ -84,7 +84,9 @@ void replay(const ReplayOptions& options) {
   RobotMessages robot{options.lcm, options.lcm_offset_s, predictor};
   std::optional<Publisher> publisher;
   if (!options.publish.empty()) publisher.emplace(open_lcm(options.publish));
-  core.add_lobes(predictor.nominal());
+  const NominalPrediction prediction = predictor.nominal();
+  if (!prediction.warning.empty()) std::cerr << "stillcut: " << prediction.warning << '\n';
+  core.add_lobes(prediction.diagram);
 
   std::ofstream events_file;
   const bool events_to_stdout = options.events == "-";

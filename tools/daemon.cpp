@@ -216,7 +216,9 @@ void run_daemon(const DaemonOptions& options) {
   const Cell cell = read_cell(options.cell);
   Pipeline pipeline{cell};
   Predictor predictor{cell};
-  pipeline.core().add_lobes(predictor.nominal());
+  const NominalPrediction prediction = predictor.nominal();
+  if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
+  pipeline.core().add_lobes(prediction.diagram);
   const LcmConnection lcm = open_lcm(cell.lcm_url);
   const std::string bus_name = live_bus(cell.can->bus);
   const std::unique_ptr<CanBus> bus = open_can_bus(bus_name, pipeline.decoder().ids_used());

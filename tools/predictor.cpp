@@ -52,11 +52,14 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
   }
 }
 
-LobeDiagram Predictor::nominal() const {
+NominalPrediction Predictor::nominal() const {
   try {
-    return compute(posture_, cut_);
+    return {compute(posture_, cut_), {}};
   } catch (const std::invalid_argument& error) {
-    throw InputError(cell_file_, 0, error.what());
+    LobeDiagram modes_only;
+    summarise_modes(predict_posture(map_, posture_, interpolation_).posture.modes, modes_only);
+    modes_only.valid = true;
+    return {modes_only, cell_file_ + ": no stability lobes, chatter is judged by what is heard alone: " + error.what()};
   }
 }
 

@@ -28,13 +28,18 @@ class PredictionPace {
   std::int64_t last_second_ = -1;
 };
 
+struct NominalPrediction {
+  LobeDiagram diagram;  // with modes only, and no lobes, for a cut that the lobes cannot describe
+  std::string warning;  // then: one line for the user
+};
+
 class Predictor {
  public:
   // Reads the cell's dynamics map and finds its posture. Throws InputError.
   explicit Predictor(const Cell& cell);
 
-  // For the cell file's posture and cut. Throws InputError for a cut that the lobes cannot describe.
-  [[nodiscard]] LobeDiagram nominal() const;
+  // For the cell file's posture and cut.
+  [[nodiscard]] NominalPrediction nominal() const;
 
   // For a robot state: posture, feed direction and immersion as the robot reports them, the cell's where it does not.
   // The diagram is usable from a fixed time after the state's stamp, so that live run and playback take it up at the

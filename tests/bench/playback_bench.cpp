@@ -10,10 +10,7 @@
 #include <vector>
 
 #include "drivers/can/candump_log.hpp"
-#include "drivers/files/dynamics_map_file.hpp"
-#include "models/milling_simulation.hpp"
-#include "models/posture.hpp"
-#include "tools/can_encoder.hpp"
+#include "tests/simulated_cut.hpp"
 #include "tools/pipeline.hpp"
 
 using namespace stillcut;
@@ -24,22 +21,10 @@ constexpr double kSignal_s = 6.0;
 constexpr int kRuns = 15;
 
 void write_cut(const Cell& cell, const std::filesystem::path& file) {
-  MillingSetup setup;
-  setup.tool = *cell.tool;
-  setup.material = *cell.material;
-  setup.cut = *cell.cut;
-  setup.modes = find_posture(read_dynamics_map(cell.dynamics->map), cell.dynamics->posture).modes;
-  setup.axial_depth = {{0.0, 0.0}, {0.5, 0.0}, {0.6, 1.5e-3}, {2.0, 1.5e-3}, {3.0, 3.6e-3}, {5.5, 3.6e-3}, {5.6, 0.0}};
-  const double rate_hz = std::max(lowest_sample_rate_hz(setup.modes), cell.can->accelerometers.front().sample_rate_hz);
-  MillingSimulation milling{setup, rate_hz};
-  CanEncoder encoder{read_dbc(cell.can->dbc), *cell.can, cell.file.string(), {0.2, 1}, 1'500'000'000'000'000'000};
   std::ofstream out{file, std::ios::binary};
   std::array<char, kMaxCandumpLine> line{};
-  for (int i = 0; i < static_cast<int>(kSignal_s * rate_hz); ++i) {
-    const MillingState& state = milling.advance();
-    for (const CanFrame& frame : encoder.advance(state.time, state.velocity, state.spindle_speed)) {
-      out.write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
-    }
+  for (const CanFrame& frame : simulate_cut(cell, kDemoDepth, kSignal_s)) {
+    out.write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "drivers/files/dynamics_map_file.hpp"
+#include "models/lobes.hpp"
 #include "tests/tools/run_program.hpp"
 #include "tools/pipeline.hpp"
 
@@ -30,7 +31,7 @@ RobotState at_home(const Cell& cell) {
 
 TEST(Predictor, NominalDiagramSpansTheSpindleAndIsUsableAtOnce) {
   const Cell cell = demo_cell();
-  const LobeDiagram diagram = Predictor{cell}.nominal();
+  const LobeDiagram diagram = Predictor{cell}.nominal().diagram;
   ASSERT_TRUE(diagram.valid);
   EXPECT_EQ(diagram.usable_from_ns, 0);
   EXPECT_EQ(diagram.posture_stamp_ns, 0);
@@ -39,10 +40,21 @@ TEST(Predictor, NominalDiagramSpansTheSpindleAndIsUsableAtOnce) {
   EXPECT_GT(diagram.mode_count, 0);
 }
 
+TEST(Predictor, ACutThatLobesCannotDescribeLeavesTheModesAndAWarning) {
+  Cell cell = demo_cell();
+  cell.tool->pitch = {3.0, kTwoPi - 3.0};
+  const NominalPrediction prediction = Predictor{cell}.nominal();
+  EXPECT_NE(prediction.warning.find("no stability lobes"), std::string::npos);
+  EXPECT_TRUE(prediction.diagram.valid);
+  EXPECT_EQ(prediction.diagram.point_count, 0);
+  EXPECT_GT(prediction.diagram.mode_count, 0);
+  EXPECT_TRUE(std::isnan(margin_at(prediction.diagram, cell.cut->spindle_speed, 1e-3)));
+}
+
 TEST(Predictor, ARobotAtTheNominalPostureGetsTheNominalLobesDated) {
   const Cell cell = demo_cell();
   Predictor predictor{cell};
-  const LobeDiagram nominal = predictor.nominal();
+  const LobeDiagram nominal = predictor.nominal().diagram;
   const auto diagram = predictor.at(at_home(cell));
   ASSERT_TRUE(diagram.has_value());
   EXPECT_EQ(diagram->posture_stamp_ns, kNow);
@@ -55,7 +67,7 @@ TEST(Predictor, ARobotAtTheNominalPostureGetsTheNominalLobesDated) {
 TEST(Predictor, WhatTheRobotTellsOfItsCutCounts) {
   const Cell cell = demo_cell();
   Predictor predictor{cell};
-  const LobeDiagram nominal = predictor.nominal();
+  const LobeDiagram nominal = predictor.nominal().diagram;
   RobotState slot = at_home(cell);
   slot.milling = Milling::slot;
   slot.radial_depth = cell.tool->diameter;

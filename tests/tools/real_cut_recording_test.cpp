@@ -28,7 +28,7 @@ const Cell& cell() {
 }
 
 const LobeDiagram& lobes() {
-  static const LobeDiagram diagram = Predictor{cell()}.nominal();
+  static const LobeDiagram diagram = Predictor{cell()}.nominal().diagram;
   return diagram;
 }
 
