@@ -54,7 +54,10 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
 
 NominalPrediction Predictor::nominal() const {
   try {
-    return {compute(posture_, cut_), {}};
+    LobeDiagram diagram = compute(posture_, cut_);
+    const bool outside = !diagram.valid;
+    return {diagram, outside ? cell_file_ + ": dynamics.posture lies far outside the map: no prediction is used; tap the robot there"
+                             : std::string{}};
   } catch (const std::invalid_argument& error) {
     LobeDiagram modes_only;
     summarise_modes(predict_posture(map_, posture_, interpolation_).posture.modes, modes_only);

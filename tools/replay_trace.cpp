@@ -1,13 +1,19 @@
 #include "tools/replay_trace.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace stillcut {
 
 TraceCollector::TraceCollector(const Cell& cell) {
-  trace_.title = cell.file.filename().string();
+  std::array<char, 160> cut{};
+  std::snprintf(cut.data(), cut.size(), "%s, %d-tooth tool of %.0f mm, %.1f mm deep", cell.material ? cell.material->name.c_str() : "cut",
+                cell.tool->teeth, cell.tool->diameter * 1e3, cell.cut->axial_depth * 1e3);
+  trace_.title = cut.data();
+  trace_.subtitle = cell.file.string();
   trace_.sample_rate_hz = cell.can->accelerometers.front().sample_rate_hz;
   trace_.teeth = cell.tool->teeth;
   trace_.min_speed_rpm = rad_s_to_rpm(cell.spindle->min_speed);
