@@ -15,14 +15,14 @@ namespace stillcut {
 // robot_state_t as received (contracts.md), placed on the CAN stamps' clock.
 struct RobotState {
   std::int64_t stamp_ns = 0;
-  std::array<double, 6> joint_position{};     // rad
-  std::array<double, 3> tcp_position{};       // m, workpiece frame
+  std::array<double, 6> joint_position{};  // rad
+  std::array<double, 3> tcp_position{};    // m, workpiece frame
   std::array<double, 4> tool_orientation{1, 0, 0, 0};
-  double feed_direction = 0.0;                // rad
-  double feed_rate = 0.0;                     // m/s
-  double spindle_speed_rpm = 0.0;             // commanded
-  double axial_depth = 0.0;                   // m; NaN: unknown
-  double radial_depth = 0.0;                  // m; NaN: unknown
+  double feed_direction = 0.0;     // rad
+  double feed_rate = 0.0;          // m/s
+  double spindle_speed_rpm = 0.0;  // commanded
+  double axial_depth = 0.0;        // m; NaN: unknown
+  double radial_depth = 0.0;       // m; NaN: unknown
   Milling milling = Milling::unknown;
   std::int32_t block = 0;
 };
@@ -37,7 +37,12 @@ struct CorrectionAck {
 
 enum class RuntimeMode : std::int8_t { off = 0, shadow = 1, active = 2 };
 enum class CorrectionKind : std::int8_t {
-  release = 0, spindle_speed = 1, speed_variation = 2, feed_direction = 3, feed_override = 4, stop_request = 5
+  release = 0,
+  spindle_speed = 1,
+  speed_variation = 2,
+  feed_direction = 3,
+  feed_override = 4,
+  stop_request = 5
 };
 
 // Bits of Correction::limited_by.
@@ -50,14 +55,14 @@ struct Correction {
   std::int32_t valid_for_ms = 0;
   RuntimeMode mode = RuntimeMode::shadow;
   CorrectionKind kind = CorrectionKind::release;
-  double spindle_speed_rpm = 0.0;         // setpoint now, on the jerk-limited ramp
+  double spindle_speed_rpm = 0.0;  // setpoint now, on the jerk-limited ramp
   double spindle_speed_target_rpm = 0.0;
   double speed_variation_ratio = 0.0;
   double speed_variation_hz = 0.0;
   double feed_override = 1.0;
-  double feed_direction = 0.0;            // rad
+  double feed_direction = 0.0;  // rad
   double chatter_frequency_hz = 0.0;
-  double predicted_margin_before = 0.0;   // a_lim/a - 1; NaN unknown
+  double predicted_margin_before = 0.0;  // a_lim/a - 1; NaN unknown
   double predicted_margin_after = 0.0;
   std::int32_t limited_by = 0;
   std::int8_t confidence_percent = 0;
@@ -70,7 +75,7 @@ struct Status {
   RuntimeMode mode = RuntimeMode::shadow;
   double spindle_speed_rpm = 0.0;
   double indicator = 0.0;
-  double margin = 0.0;                // NaN unknown
+  double margin = 0.0;  // NaN unknown
   double chatter_frequency_hz = 0.0;
   std::int64_t frames = 0;
   std::int64_t frames_lost = 0;

@@ -45,9 +45,9 @@ bool LiveLoop::tick() noexcept {
   return bus_.state() != BusState::ended;
 }
 
-// A frame from a time that was already declared silent (the machine stood still between stamp and socket) counts as of the
-// end of that silence: dropping it would be a decision that the recording cannot repeat. A frame from much earlier means
-// that the host's clock was set back: the core drops it and says so, and data time goes on from where it was.
+// A frame from a time that was already declared silent (the machine stood still between stamp and socket) counts as of
+// the end of that silence: dropping it would be a decision that the recording cannot repeat. A frame from much earlier
+// means that the host's clock was set back: the core drops it and says so, and data time goes on from where it was.
 void LiveLoop::place_in_time(CanFrame& frame) noexcept {
   frame.stamp_ns += clock_shift_ns_;
   const std::int64_t late_ns = declared_ns_ - frame.stamp_ns;

@@ -56,8 +56,10 @@ NominalPrediction Predictor::nominal() const {
   try {
     LobeDiagram diagram = compute(posture_, cut_);
     const bool outside = !diagram.valid;
-    return {diagram, outside ? cell_file_ + ": dynamics.posture lies far outside the map: no prediction is used; tap the robot there"
-                             : std::string{}};
+    return {diagram,
+            outside
+                ? cell_file_ + ": dynamics.posture lies far outside the map: no prediction is used; tap the robot there"
+                : std::string{}};
   } catch (const std::invalid_argument& error) {
     LobeDiagram modes_only;
     summarise_modes(predict_posture(map_, posture_, interpolation_).posture.modes, modes_only);

@@ -10,8 +10,9 @@ namespace stillcut {
 
 TraceCollector::TraceCollector(const Cell& cell) {
   std::array<char, 160> cut{};
-  std::snprintf(cut.data(), cut.size(), "%s, %d-tooth tool of %.0f mm, %.1f mm deep", cell.material ? cell.material->name.c_str() : "cut",
-                cell.tool->teeth, cell.tool->diameter * 1e3, cell.cut->axial_depth * 1e3);
+  std::snprintf(cut.data(), cut.size(), "%s, %d-tooth tool of %.0f mm, %.1f mm deep",
+                cell.material ? cell.material->name.c_str() : "cut", cell.tool->teeth, cell.tool->diameter * 1e3,
+                cell.cut->axial_depth * 1e3);
   trace_.title = cut.data();
   trace_.subtitle = cell.file.string();
   trace_.sample_rate_hz = cell.can->accelerometers.front().sample_rate_hz;

@@ -102,14 +102,14 @@ def bus_off(folder):
 def lost_frames(folder):
     events, summary = run(folder, LOST_FRAMES)
     lost = lines(folder, "cut.log") - lines(folder, "thinned.log")
-    require(lost >= 100 and summary["frames_lost"] == lost, f"{lost} frames were left out, {summary['frames_lost']} counted")
+    require(lost >= 50 and summary["frames_lost"] == lost, f"{lost} frames were left out, {summary['frames_lost']} counted")
     require(any("lost" in note for note in faults(events)), f"loss is a fault: {faults(events)}")
     whole, _ = folder.replay("cut.log")
     onset = next(e for e in events_of(whole) if e["event"] == "chatter_onset")
     found = [e for e in events if e["event"] == "chatter_onset"]
     require(found, "the chatter was missed")
     require(abs(number(found[0]["time_s"]) - number(onset["time_s"])) < 0.3 and
-            abs(number(found[0]["frequency_hz"]) - number(onset["frequency_hz"])) < 5,
+            abs(number(found[0]["frequency_hz"]) - number(onset["frequency_hz"])) < 10,
             f"first onset {found[0]}; without loss {onset}")
 
 
