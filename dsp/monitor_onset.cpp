@@ -169,7 +169,9 @@ bool Monitor::stands_out_of_the_orders(const SensorPath& path, const LineCandida
   if (steady_s_ < std::max(0.3, kSettledRevolutions / spindle_hz)) return false;
   const double own_hz = std::round(candidate.frequency_hz / spindle_hz) * spindle_hz;
   double others = 0.0;
-  for (double hz = spindle_hz; hz < 0.4 * path.sample_rate_hz(); hz += spindle_hz) {
+  const auto orders = static_cast<int>(0.4 * path.sample_rate_hz() / spindle_hz);
+  for (int order = 1; order <= orders; ++order) {
+    const double hz = order * spindle_hz;
     if (std::abs(hz - own_hz) >= 2.5 * path.bin_hz()) others = std::max(others, path.watch().ratio_at(hz));
   }
   return candidate.ratio > 4.0 * others;

@@ -61,7 +61,8 @@ Tone analyse_tone(std::span<const float> samples, double sample_rate_hz, double 
     phase[p] = std::arg(pieces[p]);
     if (p > 0) phase[p] = phase[p - 1] + std::remainder(phase[p] - phase[p - 1], two_pi);
   }
-  const double piece_s = static_cast<double>(samples.size() / kPieces) / sample_rate_hz;
+  const std::size_t piece = samples.size() / kPieces;
+  const double piece_s = static_cast<double>(piece) / sample_rate_hz;
 
   std::array<double, 4> quarter{};
   for (int q = 0; q < 4; ++q) quarter[q] = std::sqrt(0.5 * (power[2 * q] + power[2 * q + 1]));

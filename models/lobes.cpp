@@ -38,6 +38,7 @@ std::vector<double> equally_spaced_speeds(double first, double last, int count) 
     throw std::invalid_argument("speeds: must be positive and rise from the first to the last");
   }
   std::vector<double> speeds;
+  speeds.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     speeds.push_back(i + 1 == count && count > 1 ? last : first + (last - first) * i / std::max(1, count - 1));
   }

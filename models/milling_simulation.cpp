@@ -219,7 +219,8 @@ void MillingSimulation::step() {
 
 const MillingState& MillingSimulation::advance() {
   for (int i = 0; i < steps_per_sample_; ++i) step();
-  state_.time = static_cast<double>(step_count_ / steps_per_sample_) * sample_step_;  // free of the steps' rounding
+  const std::int64_t sample = step_count_ / steps_per_sample_;
+  state_.time = static_cast<double>(sample) * sample_step_;  // free of the steps' rounding
   return state_;
 }
 

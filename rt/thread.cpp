@@ -85,7 +85,7 @@ class Attributes {
   [[nodiscard]] const pthread_attr_t* get() const noexcept { return &attributes_; }
 
  private:
-  pthread_attr_t attributes_;
+  pthread_attr_t attributes_{};
 };
 
 bool set_affinity(Attributes& attributes, int cpu) noexcept {
@@ -140,7 +140,7 @@ RealTimeThread::RealTimeThread(const RealTimeSettings& settings, std::function<v
     error = pthread_create(&thread_, attributes.get(), run, start.get());
     if (error != 0) throw std::system_error(error, std::generic_category(), "cannot start the real-time thread");
   }
-  start.release();  // the thread's now
+  (void)start.release();  // the thread's now
   joinable_ = true;
   report_.timer_slack = ready.get();
   if (!report_.timer_slack) add_reason(report_, "timer slack not set");

@@ -1,4 +1,5 @@
 # Target `tidy`: clang-tidy over every source of the product, again only for what changed since (any header counts for all).
+set(STILLCUT_TIDY_MORE "" CACHE STRING "Further checks, e.g. clang-analyzer-* (slow)")
 find_program(CLANG_TIDY clang-tidy)
 if(CLANG_TIDY)
   set(stamps)
@@ -11,7 +12,7 @@ if(CLANG_TIDY)
       set(stamp ${PROJECT_BINARY_DIR}/tidy/${source}.ok)
       get_filename_component(folder ${stamp} DIRECTORY)
       add_custom_command(OUTPUT ${stamp}
-        COMMAND ${CLANG_TIDY} --quiet -p ${PROJECT_BINARY_DIR} ${source}
+        COMMAND ${CLANG_TIDY} --quiet --checks=${STILLCUT_TIDY_MORE} -p ${PROJECT_BINARY_DIR} ${source}
         COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
         COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
         DEPENDS ${PROJECT_SOURCE_DIR}/${source} ${headers} ${PROJECT_SOURCE_DIR}/.clang-tidy stillcut_lcm_types

@@ -27,7 +27,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) fail("cannot be opened (" + std::generic_category().message(errno) + "); check its permissions");
   std::string text;
-  std::array<char, 65536> chunk;
+  std::array<char, 65536> chunk{};
   while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0) {
     text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
     if (text.size() > kMaxBytes) fail("is larger than 64 MiB; is it the right file?");

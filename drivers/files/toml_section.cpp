@@ -66,7 +66,7 @@ int TomlSection::whole_number(std::string_view key, int min, int max) {
   return static_cast<int>(value);
 }
 
-std::string TomlSection::text(std::string_view key, std::optional<std::string> fallback) {
+std::string TomlSection::text(std::string_view key, const std::optional<std::string>& fallback) {
   const toml::node* node = find(key, !fallback);
   if (node == nullptr) return fallback.value_or("");
   if (!node->is_string()) fail_type(key, *node, "text in quotes");

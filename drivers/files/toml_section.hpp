@@ -39,7 +39,7 @@ class TomlSection {
   // misspelt key is then reported as unknown, with the right name, and not as the missing one.
   double number(std::string_view key, Bounds bounds, std::optional<double> fallback = {});
   int whole_number(std::string_view key, int min, int max);
-  std::string text(std::string_view key, std::optional<std::string> fallback = {});
+  std::string text(std::string_view key, const std::optional<std::string>& fallback = {});
   template <class T>
   T choice(std::string_view key, std::initializer_list<std::pair<std::string_view, T>> choices,
            std::optional<T> fallback = {});

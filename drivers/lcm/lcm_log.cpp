@@ -66,7 +66,7 @@ std::optional<LcmLogReader::LogEvent> LcmLogReader::next_event() {
 // The event at position_, which then moves behind it; nothing when there is no whole one. What follows it must be the
 // next event or the file's end: a damaged length would otherwise swallow good events.
 std::optional<LcmLogReader::LogEvent> LcmLogReader::read_event_here() {
-  std::array<std::uint8_t, kHeaderBytes> header;
+  std::array<std::uint8_t, kHeaderBytes> header{};
   if (!read_at(position_, header) || !std::equal(kSyncWord.begin(), kSyncWord.end(), header.begin())) return {};
   const std::span<const std::uint8_t> fields(header);
   const std::int64_t time_us = big_endian(fields.subspan(12, 8));
@@ -75,7 +75,7 @@ std::optional<LcmLogReader::LogEvent> LcmLogReader::read_event_here() {
   const std::int64_t end = position_ + kHeaderBytes + channel_length + data_length;
   if (channel_length < 1 || channel_length > kLongestChannel || end > size_) return {};
   if (time_us < -kLastUs || time_us > kLastUs) return {};
-  std::array<std::uint8_t, kSyncWord.size()> following;
+  std::array<std::uint8_t, kSyncWord.size()> following{};
   if (read_at(end, following) && following != kSyncWord) return {};
 
   LogEvent event;
