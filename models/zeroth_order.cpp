@@ -111,6 +111,7 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
     samples.push_back({frequency, samples.empty() ? pair : continued(pair, samples.back().eigenvalues)});
   }
   std::vector<std::array<LobeBranch, 2>> branches;
+  branches.reserve(samples.size());
   for (const Sample& sample : samples) {
     branches.push_back({lobe_branch(cut, sample.eigenvalues[0]), lobe_branch(cut, sample.eigenvalues[1])});
   }

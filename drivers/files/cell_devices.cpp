@@ -50,9 +50,9 @@ bool is_signal(std::string_view text, bool lists_samples) {
   return text.empty();
 }
 
-std::string read_signal(TomlSection& section, std::string_view key, std::optional<std::string> fallback,
+std::string read_signal(TomlSection& section, std::string_view key, const std::optional<std::string>& fallback,
                         bool lists_samples) {
-  std::string text = section.text(key, std::move(fallback));
+  std::string text = section.text(key, fallback);
   if (section.has(key) && !is_signal(text, lists_samples)) {
     section.fail(key, "\"" + text + "\" names no signal; give \"Message.Signal\"" +
                           (lists_samples ? " or, for several samples a frame, \"Message.Signal{0..9}\"" : ""));
