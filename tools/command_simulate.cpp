@@ -142,7 +142,7 @@ class CanOutput {
                  {options.noise_m_per_s2, options.seed},
                  kLogOrigin} {}
   void write(const MillingState& s) {
-    std::array<char, kMaxCandumpLine> line;
+    std::array<char, kMaxCandumpLine> line{};
     for (const CanFrame& frame : encoder_.advance(s.time, s.velocity, s.spindle_speed)) {
       file_.stream().write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
       ++frames_;

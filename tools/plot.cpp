@@ -17,7 +17,7 @@ constexpr Color kGrid{0.90, 0.90, 0.92}, kFrame{0.45, 0.45, 0.48};
 struct View {
   Box box;
   Range x, y;  // y: of the logarithms on a logarithmic axis
-  bool logarithmic;
+  bool logarithmic = false;
   [[nodiscard]] double px(double value) const { return box.left + (value - x.low) / x.span() * box.width(); }
   [[nodiscard]] double py(double value) const {
     const double at = !logarithmic ? value : value > 0.0 ? std::log10(value) : std::isnan(value) ? value : y.low;

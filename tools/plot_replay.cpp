@@ -10,7 +10,7 @@
 namespace stillcut {
 namespace {
 
-using plot::Band, plot::EventMark, plot::Figure, plot::Limit, plot::Line, plot::Note, plot::Panel, plot::Scatter;
+using plot::Band, plot::EventMark, plot::Figure, plot::Line, plot::Panel, plot::Scatter;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

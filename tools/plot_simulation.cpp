@@ -49,6 +49,7 @@ plot::Figure simulation_figure(const std::string& title, const std::vector<Milli
   figure.panels = {depth, force, motion};
   if (states.size() > 1) {
     std::vector<float> acceleration;
+    acceleration.reserve(states.size());
     for (State state : states) acceleration.push_back(static_cast<float>(state.acceleration.x()));
     const double rate_hz = static_cast<double>(states.size() - 1) / (states.back().time - states.front().time);
     spectrum.image = spectrogram(acceleration, rate_hz, states.front().time, kWindow, kHighest);
