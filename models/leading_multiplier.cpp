@@ -52,9 +52,9 @@ LeadingMultiplier Arnoldi::leading(const LinearMap& map, int least, double toler
   for (std::size_t i = 0; i < size; ++i) basis_[i] /= length;
 
   constexpr double kNothingNew = 1e-14;  // of the vector before orthogonalisation: the space is closed
+  constexpr double kCondition = 0.1;     // a residual moves the eigenvalue by more than itself
   constexpr int kStep = 2;
-  int next_look = least;
-  double before = -1.0;
+  int next_look = std::clamp(last_order_ - 1, least, most);
   LeadingMultiplier result;
   for (int k = 0; k < most; ++k) {
     double* fresh = vector(k + 1);
@@ -71,15 +71,35 @@ LeadingMultiplier Arnoldi::leading(const LinearMap& map, int least, double toler
     const bool closed = length <= kNothingNew * whole || order_ == most;
     if (order_ >= next_look || closed) {
       result.value = value_ = largest_ritz_value(order_);
-      const double magnitude = std::abs(result.value);
-      result.change = before < 0.0 ? magnitude : std::abs(magnitude - before);
-      if (closed || (before >= 0.0 && result.change <= tolerance * std::max(1.0, magnitude))) break;
-      before = magnitude;
+      find_ritz_vector();
+      result.residual = closed ? 0.0 : length * std::abs(ritz_vector_.back());
+      if (result.residual <= kCondition * tolerance * std::max(1.0, std::abs(value_))) break;
       next_look = order_ + kStep;
     }
     for (std::size_t i = 0; i < size; ++i) fresh[i] /= length;
   }
+  last_order_ = order_;
   return result;
+}
+
+// The unit eigenvector of the Hessenberg matrix, from its last component upward: row j + 1 gives component j.
+void Arnoldi::find_ritz_vector() {
+  constexpr double kLarge = 1e150;  // keeps long runs of small subdiagonals in range
+  const auto order = static_cast<std::size_t>(order_);
+  ritz_vector_.assign(order, 1.0);
+  double square = 1.0;
+  for (std::size_t j = order - 1; j-- > 0;) {
+    const auto entry = [&](std::size_t column) { return hessenberg_[column * kRows + j + 1]; };
+    std::complex<double> sum = value_ * ritz_vector_[j + 1];
+    for (std::size_t i = j + 1; i < order; ++i) sum -= entry(i) * ritz_vector_[i];
+    ritz_vector_[j] = sum / entry(j);
+    square += std::norm(ritz_vector_[j]);
+    if (square > kLarge) {
+      for (std::size_t i = j; i < order; ++i) ritz_vector_[i] /= std::sqrt(square);
+      square = 1.0;
+    }
+  }
+  for (std::complex<double>& component : ritz_vector_) component /= std::sqrt(square);
 }
 
 std::complex<double> Arnoldi::largest_ritz_value(int order) {
@@ -95,23 +115,11 @@ std::complex<double> Arnoldi::largest_ritz_value(int order) {
 }
 
 std::vector<std::complex<double>> Arnoldi::eigenvector(int count) const {
-  // Eigenvector of the Hessenberg matrix from its last component upward: row j + 1 gives component j.
-  std::vector<std::complex<double>> small(static_cast<std::size_t>(order_), 1.0);
-  for (int j = order_ - 2; j >= 0; --j) {
-    const auto entry = [&](int column) { return hessenberg_[static_cast<std::size_t>(column * kRows + j + 1)]; };
-    std::complex<double> sum = value_ * small[static_cast<std::size_t>(j + 1)];
-    for (int i = j + 1; i < order_; ++i) sum -= entry(i) * small[static_cast<std::size_t>(i)];
-    small[static_cast<std::size_t>(j)] = sum / entry(j);
-    constexpr double kLarge = 1e150;  // keeps long runs of small subdiagonals in range
-    if (std::abs(small[static_cast<std::size_t>(j)]) > kLarge) {
-      for (int i = j; i < order_; ++i) small[static_cast<std::size_t>(i)] /= kLarge;
-    }
-  }
   std::vector<std::complex<double>> vector(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < order_; ++k) {
       vector[static_cast<std::size_t>(i)] +=
-          basis_[static_cast<std::size_t>(k * size_ + i)] * small[static_cast<std::size_t>(k)];
+          basis_[static_cast<std::size_t>(k * size_ + i)] * ritz_vector_[static_cast<std::size_t>(k)];
     }
   }
   return vector;

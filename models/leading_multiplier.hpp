@@ -17,14 +17,15 @@ class LinearMap {
 
 struct LeadingMultiplier {
   std::complex<double> value;  // of a conjugate pair the one with positive imaginary part
-  double change = 0.0;         // of its magnitude with the last vectors added: an estimate of the error
+  double residual = 0.0;       // |map v - value v| of its unit vector v
 };
 
 // Keeps its memory from call to call; one thread at a time.
 class Arnoldi {
  public:
-  // `least` vectors are always taken (twice the number of modes plus a few); more until the magnitude moves by less
-  // than tolerance x max(1, magnitude). The starting vector is fixed: same map, same bits.
+  // `least` vectors are always taken (twice the number of modes plus a few), and about as many as the last call needed;
+  // more until the residual is a tenth of tolerance x max(1, magnitude). The starting vector is fixed: the same calls
+  // give the same bits.
   LeadingMultiplier leading(const LinearMap& map, int least, double tolerance);
 
   // The first `count` components of the eigenvector of the last leading().
@@ -32,11 +33,13 @@ class Arnoldi {
 
  private:
   std::complex<double> largest_ritz_value(int order);
+  void find_ritz_vector();
 
-  int size_ = 0, order_ = 0;
+  int size_ = 0, order_ = 0, last_order_ = 0;
   std::complex<double> value_;
   std::vector<double> basis_;       // vectors of size_, one after another
   std::vector<double> hessenberg_;  // column by column, kMostVectors + 1 rows
+  std::vector<std::complex<double>> ritz_vector_;
   std::vector<double> scratch_;
 };
 

@@ -49,10 +49,19 @@ STILLCUT_MULTIVERSION void invert(double* matrix, int size, int* exchanged) {
   }
 }
 
-// result += matrix x vector, the matrix column by column.
+// result += factor x matrix x vector, the matrix column by column; four columns a pass, so that the result is read and
+// written a quarter as often.
 STILLCUT_MULTIVERSION void multiply(const double* matrix, const double* vector, int rows, int columns, double factor,
                                     double* result) {
-  for (int j = 0; j < columns; ++j) {
+  int j = 0;
+  for (; j + 4 <= columns; j += 4) {
+    const double a = factor * vector[j], b = factor * vector[j + 1], c = factor * vector[j + 2],
+                 d = factor * vector[j + 3];
+    const double* first = matrix + static_cast<std::ptrdiff_t>(j) * rows;
+    const double *second = first + rows, *third = second + rows, *fourth = third + rows;
+    for (int i = 0; i < rows; ++i) result[i] += (a * first[i] + b * second[i]) + (c * third[i] + d * fourth[i]);
+  }
+  for (; j < columns; ++j) {
     const double value = factor * vector[j];
     const double* column = matrix + static_cast<std::ptrdiff_t>(j) * rows;
     for (int i = 0; i < rows; ++i) result[i] += value * column[i];

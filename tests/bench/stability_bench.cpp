@@ -114,7 +114,8 @@ void PostureSweep(benchmark::State& state) {
   DynamicsMap map;
   map.has_joints = true;
   for (int i = 0; i < 15; ++i) {
-    Posture posture{.id = std::to_string(i)};
+    Posture posture;
+    posture.id = std::to_string(i);
     posture.joints = {0.1 * (i % 5), 0.15 * (i / 5), 0, 0, 0, 0};
     posture.modes = test::robot_modes();
     for (std::size_t m = 0; m < posture.modes.size(); ++m) {
@@ -123,9 +124,12 @@ void PostureSweep(benchmark::State& state) {
     }
     map.postures.push_back(posture);
   }
-  Tool tool{.diameter = 0.025, .teeth = 2};
-  Material material{.ktc = 8e8, .krc = 3e8};
-  Cut cut{.milling = Milling::down, .radial_depth = 0.0125};
+  Tool tool;
+  tool.diameter = 0.025, tool.teeth = 2;
+  Material material;
+  material.ktc = 8e8, material.krc = 3e8;
+  Cut cut;
+  cut.milling = Milling::down;
   const SpindleLimits spindle{rpm_to_rad_s(2800), rpm_to_rad_s(3800), 200.0, 2000.0};
   double share = 0.0;
   for (auto _ : state) {
