@@ -26,18 +26,25 @@ void require(bool holds, const char* message) {
 
 LinearCut linear_cut(const Tool& tool, const Material& material, const Cut& cut) {
   require(tool.teeth >= 1, "teeth: must be at least 1");
-  require(tool.shape == ToolShape::end, "shape: lobes cover end mills only so far; set shape = \"end\"");
+  require(tool.pitch.empty() || tool.pitch.size() == static_cast<std::size_t>(tool.teeth),
+          "pitch_deg: needs one angle a tooth");
+  double turn = tool.pitch.empty() ? kTwoPi : 0.0;
+  bool equal = true;
   for (const double pitch : tool.pitch) {
-    require(std::abs(pitch - kTwoPi / tool.teeth) < 1e-6,
-            "pitch_deg: lobes cover equal tooth spacing only so far; leave pitch_deg out");
+    require(pitch > 0.0 && std::isfinite(pitch), "pitch_deg: angles must be positive");
+    turn += pitch;
+    equal = equal && std::abs(pitch - kTwoPi / tool.teeth) < 1e-9;
   }
+  require(std::abs(turn - kTwoPi) < 1e-6, "pitch_deg: the angles must add up to 360");
   require(std::isfinite(material.ktc) && material.ktc > 0.0, "ktc: must be positive");
   require(std::isfinite(material.krc) && std::isfinite(material.kac), "krc, kac: must be numbers");
   require(std::isfinite(material.process_damping) && material.process_damping >= 0.0,
           "process damping: must not be negative");
   require(tool.helix >= 0.0 && tool.helix < 0.5 * std::numbers::pi, "helix: must lie in [0, 90) degrees");
   LinearCut result;
+  result.shape = tool.shape;
   result.teeth = tool.teeth;
+  if (!equal) result.pitch = tool.pitch;
   result.immersion = immersion(cut.milling, cut.radial_depth, tool.diameter);
   result.ktc = material.ktc;
   result.krc = material.krc;

@@ -14,16 +14,21 @@ namespace stillcut {
 using DirectionMatrix = Eigen::Matrix<double, 3, 2>;  // force (x, y, z) per displacement (x, y)
 
 struct LinearCut {
-  int teeth = 0;  // equally spaced
+  ToolShape shape = ToolShape::end;
+  int teeth = 0;
+  std::vector<double> pitch;  // rad, from each tooth to the one that cut before it, sum 2 pi; empty: equally spaced
   Immersion immersion;
   double ktc = 0.0, krc = 0.0, kac = 0.0;  // Pa
   double process_damping = 0.0;            // N/m, C_p
   double radius = 0.0;                     // m
   double lag_per_depth = 0.0;              // rad/m, helix: how far a tooth's edge trails per metre above the tip
+
+  // Angle of the spindle after which the cut repeats: from tooth to tooth, or a whole turn where the pitch varies.
+  double period_angle() const { return pitch.empty() ? kTwoPi / teeth : kTwoPi; }
 };
 
-// What the linear theory needs of a cell. Throws std::invalid_argument for what it does not cover (ball end, unequal
-// pitch) and for values out of range.
+// What the linear theory needs of a cell. A ball end keeps its immersion at every height and lags by its constant lead
+// (surface paper, eq. 3). Throws std::invalid_argument for values out of range.
 LinearCut linear_cut(const Tool& tool, const Material& material, const Cut& cut);
 
 // Parts of the cell that the lobes leave out, one line each; empty when everything is covered.

@@ -8,6 +8,7 @@
 
 #include "models/floquet.hpp"
 #include "models/linear_cut.hpp"
+#include "models/lobe_trace.hpp"
 #include "models/receptance.hpp"
 #include "models/zeroth_order.hpp"
 
@@ -15,6 +16,13 @@ namespace stillcut {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void refuse_too_many(std::span<const Mode> modes) {
+  if (modes.size() <= kMostFloquetModes) return;
+  throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
+                              " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
+                              "; use interpolation = \"modal\", or method zoa");
+}
 
 }  // namespace
 
@@ -54,11 +62,7 @@ std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material,
   if (settings.method == LobeMethod::zeroth_order) {
     return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
   }
-  if (modes.size() > kMostFloquetModes) {
-    throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
-                                " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
-                                "; use interpolation = \"modal\", or method zoa");
-  }
+  refuse_too_many(modes);
   std::vector<DepthLimit> limits;
   for (const double speed : speeds) {
     limits.push_back(floquet_depth_limit(linear, turned, speed, {.max_depth = settings.max_depth}));
@@ -67,6 +71,18 @@ std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material,
   return limits;
 }
 
+namespace {
+
+std::vector<DepthLimit> traced_limits(const Tool& tool, const Material& material, const Cut& cut,
+                                      std::span<const Mode> modes, std::span<const double> speeds, double max_depth) {
+  check_modes(modes);
+  refuse_too_many(modes);
+  const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
+  return traced_depth_limits(linear_cut(tool, material, cut), turned, speeds, {.max_depth = max_depth});
+}
+
+}  // namespace
+
 LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
                                  const SpindleLimits& spindle, std::span<const Mode> modes,
                                  const LobeSettings& settings) {
@@ -74,7 +90,9 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
     throw std::invalid_argument("lobe diagram: needs 2 to " + std::to_string(LobeDiagram::kMaxPoints) + " points");
   }
   const std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, settings.points);
-  const std::vector<DepthLimit> limits = depth_limits(tool, material, cut, modes, speeds, settings);
+  const std::vector<DepthLimit> limits = settings.method == LobeMethod::floquet
+                                             ? traced_limits(tool, material, cut, modes, speeds, settings.max_depth)
+                                             : depth_limits(tool, material, cut, modes, speeds, settings);
   LobeDiagram diagram;
   diagram.point_count = settings.points;
   for (std::size_t i = 0; i < limits.size(); ++i) {

@@ -10,6 +10,8 @@
 
 namespace stillcut {
 
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 // A mode in normal form: q'' + 2 zeta w q' + w^2 q = gain (u . F). Its state is (q, q'/w), both in m.
 struct Oscillator {
   double frequency, decay, damped_frequency;  // rad/s, 1/s, rad/s
@@ -21,23 +23,40 @@ struct Oscillator {
   Eigen::Vector2d impulse(double time) const;     // state a time after a unit impulse along the mode
 };
 
-// Response over a stretch to a unit force at each node (the polynomial that is 1 there and 0 at the other nodes).
+// What a mode does over a stretch of time, in free motion from the state at its start and under a unit force at each
+// node (the polynomial that is 1 there and 0 at the other nodes).
 struct ModalResponse {
-  std::vector<Eigen::MatrixXd> at_node;  // state at each node: 2 x forced node
-  Eigen::MatrixXd end;                   // state at the end: 2 x forced node
+  Eigen::Matrix2d free_end;  // state at the end per state at the start
+  RowMatrix free;            // q at each node per state at the start: 2 x nodes
+  RowMatrix forced;          // q at each node per forced node: nodes x nodes
+  RowMatrix forced_end;      // state at the end per forced node: 2 x nodes
+  RowMatrix free_rate;       // as `free` and `forced`, of q'/w; empty unless asked for
+  RowMatrix forced_rate;
 };
 
 // A stretch of time with Gauss-Legendre nodes; the tables do not depend on its duration.
 class ForcedStretch {
  public:
   explicit ForcedStretch(int nodes);
-  Eigen::Index size() const { return rule_.nodes.size(); }
-  double node(Eigen::Index i) const { return rule_.nodes[i]; }  // in (0, 1), share of the stretch
-  ModalResponse respond(const Oscillator& mode, double duration) const;
+  int size() const { return static_cast<int>(rule_.nodes.size()); }
+  const Eigen::VectorXd& nodes() const { return rule_.nodes; }  // in (0, 1), shares of the stretch
+
+  // Duration in s. `response` keeps its memory from call to call.
+  void respond(const Oscillator& mode, double duration, bool with_rates, ModalResponse& response) const;
+
+  // q a time after the stretch's start, 0 to its duration (s), per state at the start and per forced node:
+  // 1 x (2 + nodes).
+  Eigen::RowVectorXd displacement_at(const Oscillator& mode, double duration, double time) const;
 
  private:
   GaussLegendre rule_;
-  std::vector<Eigen::MatrixXd> weights_;  // [node, at last the end]: quadrature point x node
+  std::vector<double> times_;  // shares of the duration at which decays are needed: x_i x_k (k <= i), then x_i
+  // How a force at each node enters the quadrature for the answer at node i (at last: at the end), by the decay from
+  // the quadrature point to the node: [i][decay k][node j].
+  std::vector<double> weights_;
 };
+
+// The tables for a node count (1 to 128), made at their first use. Any thread.
+const ForcedStretch& forced_stretch(int nodes);
 
 }  // namespace stillcut

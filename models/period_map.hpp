@@ -1,45 +1,62 @@
-// What one tooth period does to a small disturbance of the cut: the period map (monodromy) of the linear delay
-// equations of milling, solved by collocation. Its largest multiplier decides stability (Floquet).
+// What one period does to a small disturbance of the cut: the period map (monodromy) of the linear delay equations of
+// milling, solved by collocation. Its largest multiplier decides stability (Floquet).
 //
 // Between entries and exits the structure answers freely, so its response to a force is known exactly: modal free decay
 // plus the convolution with the impulse response. The only unknown is the chip thickness each tooth cuts; it is smooth
-// between breakpoints, so its values at a few Gauss-Legendre nodes of each piece determine it with spectral accuracy.
-// The map acts on the modal state at tooth entry together with the tool's displacement at the nodes one period ago.
+// between breakpoints, so its values at a few Gauss-Legendre nodes of each stretch determine it with spectral accuracy.
 #pragma once
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "models/dynamics_map.hpp"
 #include "models/linear_cut.hpp"
 
 namespace stillcut {
 
-// How finely a cutting piece is divided: stretches of at most four cycles, each with nodes + nodes_per_cycle x cycles
-// nodes. Cycles are those of the highest mode plus one for each half turn of the tool.
+// How finely the cut is divided: stretches of at most cycles_per_stretch cycles, each with nodes + nodes_per_cycle x
+// cycles nodes. Cycles are those of the highest mode, stiffened by the cut, and of the turning of the tool (one each
+// half turn).
 struct Collocation {
   double nodes = 7.0;
   double nodes_per_cycle = 4.0;
+  double cycles_per_stretch = 4.0;
 };
 
-// Everything that depends on the speed but, for straight teeth, not on the depth:
-//   y  = observed_of_state s - depth * observed_of_chip c,   s' = state_of_state s - depth * state_of_chip c,
-// with s the state at the start of the period (displacement and velocity/frequency of each mode, m), s' at its end, y
-// what is observed at the nodes (positions, then velocities where process damping needs them), c = y minus, for
-// positions, the same a period ago.
+// A part of the period, at whose nodes `rows` displacements are observed: y = of_state s - depth of_chip c, where s is
+// the modal state (q, q'/w of each mode, m) at its start and c the chip: y minus what the tool left there a delay ago,
+// in m. Where process damping acts, as many rows of velocities follow, whose chip is themselves. In free flight there
+// are no rows.
+struct StretchMap {
+  double from = 0.0, angle = 0.0;  // spindle angle at its start, and its length, rad
+  double duration = 0.0;           // s
+  int nodes = 0;
+  int rows = 0;                       // displacements observed at a node
+  int positions = 0;                  // nodes x rows
+  std::vector<int> tooth;             // of each of a node's rows: whose delay it has
+  std::vector<Eigen::Matrix2d> free;  // of each mode: state at the end per state at the start
+  Eigen::MatrixXd of_state;           // all rows x states
+  Eigen::MatrixXd of_chip;            // all rows x all rows, stored transposed: column i belongs to row i
+  Eigen::MatrixXd end_of_chip;        // states x all rows: s' = free s - depth end_of_chip c
+  Eigen::MatrixXd observe;            // 3 x positions: the direction of each displacement
+  Eigen::MatrixXd load;               // 3 x all rows: force per chip and depth, N/m^2
+};
+
 struct PeriodMap {
-  double period = 0.0;         // s
-  Eigen::Index positions = 0;  // observed positions; velocities, if any, are as many
-  Eigen::MatrixXd observed_of_state, observed_of_chip, state_of_state, state_of_chip;
+  double period = 0.0;  // s
+  int states = 0;       // two a mode
+  int positions = 0;    // of all stretches
+  std::vector<StretchMap> stretches;
 };
 
-// The map for modes in the feed frame at a spindle speed in rad/s. `depth` places the ends of helical teeth and is
-// otherwise unused. Throws std::invalid_argument for a speed that is not positive, or so low that a mode vibrates more
-// than 120 times while a tooth cuts, for a negative depth, and for modes that check_modes refuses.
+// The map for modes in the feed frame at a spindle speed in rad/s. `depth` (m) places the edge of helical teeth and
+// ball ends, otherwise the map holds at any depth (depends_on_depth). `deepest` is the largest depth it has to be
+// accurate at. Throws std::invalid_argument for a speed that is not positive, or so low that a mode vibrates more than
+// 2000 times in a period, for a negative depth, and for modes that check_modes refuses.
 PeriodMap period_map(const LinearCut& cut, std::span<const Mode> feed_frame_modes, double speed, double depth,
-                     const Collocation& collocation);
+                     double deepest, const Collocation& collocation);
 
-// The monodromy matrix at a depth (m): (s, positions a period ago) to (s', positions now).
-Eigen::MatrixXd monodromy(const PeriodMap& map, double depth);
+bool depends_on_depth(const LinearCut& cut);
 
 }  // namespace stillcut

@@ -16,7 +16,7 @@ constexpr std::int64_t kLongestTold_ns = 5'000'000'000;  // of a silence; longer
 constexpr double kPriorStep = 0.1;                       // of margin, worth telling the monitor
 constexpr std::int64_t kControllerSilent_ns = 500'000'000;
 // A diagram computed for a posture older than this is not of the present posture (as long as states arrive).
-constexpr std::int64_t kLobesTooOld_ns = 4'000'000'000;
+constexpr std::int64_t kLobesTooOld_ns = 1'500'000'000;
 
 // CAN_ERR_* of linux/can/error.h
 constexpr std::uint32_t kControllerTrouble = 0x04, kBusOff = 0x40, kRestarted = 0x100;
@@ -103,16 +103,16 @@ void Core::add_robot_state(const RobotState& state) noexcept {
 void Core::add_lobes(const LobeDiagram& diagram) noexcept {
   // The first that came waits its turn whatever comes after it; only the newest of a full row is replaced.
   next_lobes_count_ = std::min(next_lobes_count_ + 1, next_lobes_.size());
-  next_lobes_[next_lobes_count_ - 1] = diagram;
+  waiting_lobes(next_lobes_count_ - 1) = diagram;
   adopt_lobes(now_ns_);
 }
 
 void Core::adopt_lobes(std::int64_t now_ns) noexcept {
   std::size_t due = 0;
-  while (due < next_lobes_count_ && next_lobes_[due].usable_from_ns <= now_ns) ++due;
+  while (due < next_lobes_count_ && waiting_lobes(due).usable_from_ns <= now_ns) ++due;
   if (due == 0) return;
-  lobes_ = next_lobes_[due - 1];
-  std::copy(next_lobes_.begin() + due, next_lobes_.begin() + next_lobes_count_, next_lobes_.begin());
+  lobes_ = waiting_lobes(due - 1);
+  first_lobes_ = (first_lobes_ + due) % next_lobes_.size();
   next_lobes_count_ -= due;
   update_prior();
 }

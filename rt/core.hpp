@@ -46,7 +46,7 @@ class Core {
   // The controller's own report of trouble on the bus: an error frame's identifier and second data byte
   // (linux/can/error.h).
   void add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept;
-  // Comes into use when data time reaches its usable_from_ns; until then up to four wait, in the order they came.
+  // Comes into use when data time reaches its usable_from_ns; until then up to 16 wait, in the order they came.
   void add_lobes(const LobeDiagram& diagram) noexcept;
   // Data time has come this far without a frame. One long step says what many short ones would;
   // only of a silence of more than five seconds it leaves the status messages of the beginning out.
@@ -66,6 +66,9 @@ class Core {
   void decide(std::int64_t stamp_ns) noexcept;
   void collect_events() noexcept;
   void adopt_lobes(std::int64_t now_ns) noexcept;
+  [[nodiscard]] LobeDiagram& waiting_lobes(std::size_t place) noexcept {
+    return next_lobes_[(first_lobes_ + place) % next_lobes_.size()];
+  }
   void put_status(std::int64_t now_ns) noexcept;
   void update_prior() noexcept;
   [[nodiscard]] double axial_depth() const noexcept;
@@ -76,9 +79,9 @@ class Core {
   Compensator compensator_;
   OutputQueue outputs_;
   CoreCounters counters_;
-  LobeDiagram lobes_;                        // the newest that may be used
-  std::array<LobeDiagram, 4> next_lobes_{};  // those whose time has yet to come
-  std::size_t next_lobes_count_ = 0;
+  LobeDiagram lobes_;                         // the newest that may be used
+  std::array<LobeDiagram, 16> next_lobes_{};  // those whose time has yet to come, round and round from first_lobes_
+  std::size_t first_lobes_ = 0, next_lobes_count_ = 0;
   double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown
   RobotState robot_;
   bool started_ = false;  // by the first frame

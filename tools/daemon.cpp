@@ -31,7 +31,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPollOutputs{2}, kPollRecord{20}, kPollModel{10};
+constexpr milliseconds kPollOutputs{2}, kPollRecord{20}, kPollModel{5};
 
 std::int64_t realtime_ns() {
   using namespace std::chrono;

@@ -12,8 +12,8 @@ namespace {
 
 // From a robot state's stamp to the first use of its diagram: more than the computation takes, so that live run and
 // playback agree on when a diagram came into use.
-constexpr std::int64_t kUsableAfter_ns = 2'000'000'000;
-constexpr int kPoints = 61;  // of a diagram: what the model thread computes within that time
+constexpr std::int64_t kUsableAfter_ns = 250'000'000;
+constexpr int kPoints = 121;  // of a diagram: what the model thread computes in a fraction of that time
 // A posture that has moved less than this since the last computation has the same lobes.
 constexpr double kSameAngle = 0.005;    // rad
 constexpr double kSameLength = 0.0005;  // m

@@ -4,49 +4,24 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <stdexcept>
 
-#include "models/gauss_legendre.hpp"
-#include "models/modal_response.hpp"
+#include "models/period_operator.hpp"
 #include "stability_cases.hpp"
 
 namespace stillcut {
 namespace {
 
+// The operator written out, column by column, and its eigenvalues found by another method.
 double radius(const test::StabilityCase& cutting, double speed, double depth, const Collocation& collocation) {
-  const PeriodMap map = period_map(cutting.cut, cutting.modes, speed, depth, collocation);
-  return Eigen::EigenSolver<Eigen::MatrixXd>(monodromy(map, depth), false).eigenvalues().cwiseAbs().maxCoeff();
-}
-
-TEST(GaussLegendre, IntegratesPolynomialsOfTwiceItsOrderExactly) {
-  for (const int count : {1, 2, 5, 12, 40}) {
-    const GaussLegendre rule = gauss_legendre(count);
-    for (int degree = 0; degree < 2 * count; ++degree) {
-      EXPECT_NEAR((rule.weights.array() * rule.nodes.array().pow(degree)).sum(), 1.0 / (degree + 1), 1e-13) << count;
-    }
+  const PeriodMap map = period_map(cutting.cut, cutting.modes, speed, depth, depth, collocation);
+  PeriodOperator march;
+  march.set(map, depth);
+  Eigen::MatrixXd matrix(march.size(), march.size());
+  for (int i = 0; i < march.size(); ++i) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(march.size(), i);
+    march.apply(unit.data(), matrix.col(i).data());
   }
-  EXPECT_THROW(gauss_legendre(0), std::invalid_argument);
-}
-
-TEST(GaussLegendre, LagrangeBasisReproducesPolynomials) {
-  const GaussLegendre rule = gauss_legendre(9);
-  const Eigen::VectorXd points = Eigen::VectorXd::LinSpaced(17, 0.0, 1.0);
-  const Eigen::VectorXd values = lagrange_basis(rule.nodes, points) * rule.nodes.array().pow(8).matrix();
-  EXPECT_LT((values - points.array().pow(8).matrix()).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_TRUE(lagrange_basis(rule.nodes, rule.nodes).isIdentity());
-}
-
-TEST(ModalResponse, ToAConstantForceIsTheStepResponse) {
-  const Oscillator mode(test::mode_of(120, 0.04, 5e6, 1, 0));
-  const ForcedStretch stretch(14);
-  const double duration = 0.011;
-  const ModalResponse response = stretch.respond(mode, duration);
-  // From rest under a unit force: q = (1 - free decay from q = 1)/k.
-  for (Eigen::Index i = 0; i < stretch.size(); ++i) {
-    const double expected = (1.0 - mode.transition(duration * stretch.node(i))(0, 0)) / 5e6;
-    EXPECT_NEAR(response.at_node[static_cast<std::size_t>(i)].row(0).sum(), expected, 1e-12 / 5e6);
-  }
-  EXPECT_NEAR(response.end.row(0).sum(), (1.0 - mode.transition(duration)(0, 0)) / 5e6, 1e-12 / 5e6);
+  return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 TEST(PeriodMap, OrdersConvergeOnRandomCuts) {
@@ -81,6 +56,16 @@ TEST(PeriodMap, ATurnOfTheWholePictureChangesNothing) {
     for (double& component : mode.direction) component = -component;
   }
   EXPECT_NEAR(radius(cutting, 500.0, 1e-3, {}), before, 1e-9);
+}
+
+TEST(PeriodMap, ShortStretchesGiveWhatLongOnesGive) {
+  std::mt19937_64 random(10);
+  for (int i = 0; i < 20; ++i) {
+    const test::StabilityCase cutting = test::random_case(random);
+    const double speed = rpm_to_rad_s(std::uniform_real_distribution<>(2000, 9000)(random)), depth = 1e-3;
+    const double expected = radius(cutting, speed, depth, {14.0, 6.0, 4.0});
+    EXPECT_NEAR(radius(cutting, speed, depth, {14.0, 6.0, 0.7}), expected, 1e-9 * std::max(1.0, expected));
+  }
 }
 
 }  // namespace

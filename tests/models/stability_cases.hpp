@@ -81,4 +81,28 @@ inline StabilityCase random_case(std::mt19937_64& random) {
   return result;
 }
 
+// As random_case with two to six modes, half of them on a robot's low frequencies, and unequal pitch in whole steps of
+// a `steps`th of a turn.
+inline StabilityCase random_uneven_case(std::mt19937_64& random, int steps) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  StabilityCase result = random_case(random);
+  const int teeth = std::uniform_int_distribution<int>(2, 5)(random);
+  result.cut.teeth = teeth;
+  int left = steps;
+  for (int tooth = 0; tooth + 1 < teeth; ++tooth) {
+    const int pitch = static_cast<int>(uniform(0.75, 1.25) * steps / teeth);
+    result.cut.pitch.push_back(kTwoPi * pitch / steps);
+    left -= pitch;
+  }
+  result.cut.pitch.push_back(kTwoPi * left / steps);
+  result.modes.clear();
+  const int count = std::uniform_int_distribution<int>(2, 6)(random);
+  for (int i = 0; i < count; ++i) {
+    const double angle = uniform(0.0, kTwoPi);
+    result.modes.push_back(mode_of(i % 2 == 0 ? uniform(8, 120) : uniform(120, 900), uniform(0.01, 0.06),
+                                   uniform(2e6, 3e7), std::cos(angle), std::sin(angle), uniform(-0.3, 0.3)));
+  }
+  return result;
+}
+
 }  // namespace stillcut::test

@@ -42,7 +42,7 @@ TEST(Predictor, NominalDiagramSpansTheSpindleAndIsUsableAtOnce) {
 
 TEST(Predictor, ACutThatLobesCannotDescribeLeavesTheModesAndAWarning) {
   Cell cell = demo_cell();
-  cell.tool->pitch = {3.0, kTwoPi - 3.0};
+  cell.spindle->min_speed = 1e-3;  // hours to a turn
   const NominalPrediction prediction = Predictor{cell}.nominal();
   EXPECT_NE(prediction.warning.find("no stability lobes"), std::string::npos);
   EXPECT_TRUE(prediction.diagram.valid);
@@ -88,15 +88,73 @@ TEST(Predictor, AnImmersionThatCannotBeGivesNoDiagram) {
   EXPECT_FALSE(predictor.at(wide).has_value());
 }
 
-TEST(PredictionPace, TakesTheFirstStateOfEachSecond) {
+TEST(PredictionPace, TakesTwentyFiveStatesASecond) {
   PredictionPace pace;
   int taken = 0;
-  for (int i = 0; i < 1000; ++i) {  // ten seconds at 100 Hz, beginning within a second
+  for (int i = 0; i < 1000; ++i) {  // four seconds at 250 Hz, beginning within a period
     RobotState state;
-    state.stamp_ns = kNow + kSecond / 2 + i * kSecond / 100;
+    state.stamp_ns = kNow + PredictionPace::kPeriodNs / 2 + i * kSecond / 250;
     taken += pace.due(state) ? 1 : 0;
   }
-  EXPECT_EQ(taken, 11);
+  EXPECT_EQ(taken, 101);
+}
+
+// A robot that moves through the map, one state every 40 ms: what the loop reads is the diagram of where the robot was
+// a quarter of a second before, and none once the robot has moved on without one.
+TEST(Predictor, TheLoopReadsTheLobesOfTheRobotsOwnPostureWhileItMoves) {
+  const Cell cell = demo_cell();
+  const DynamicsMap map = read_dynamics_map(cell.dynamics->map);
+  ASSERT_GT(map.postures.size(), 1U);
+  Predictor predictor{cell}, apart{cell};
+  Pipeline pipeline{cell};
+  Core& core = pipeline.core();
+  RobotState state = at_home(cell);
+  const auto place = [&](double share) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      state.joint_position[j] = (1 - share) * map.postures[0].joints[j] + share * map.postures[1].joints[j];
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      state.tcp_position[i] = (1 - share) * map.postures[0].position[i] + share * map.postures[1].position[i];
+    }
+    state.feed_direction = share;
+  };
+  constexpr int kSteps = 25;
+  constexpr std::int64_t kPeriod = PredictionPace::kPeriodNs, kLate = 250'000'000;
+  int compared = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const std::int64_t now = kNow + i * kPeriod;
+    place(static_cast<double>(i) / kSteps);
+    state.stamp_ns = now;
+    ASSERT_TRUE(core.accept_frame(now));
+    core.add_robot_state(state);
+    const auto diagram = predictor.at(state);
+    ASSERT_TRUE(diagram.has_value());
+    core.add_lobes(*diagram);
+    core.advance(now);
+    const LobeDiagram* read = core.lobes();
+    if (i * kPeriod < kLate) continue;
+    ASSERT_NE(read, nullptr) << i;
+    const std::int64_t of_step = (read->posture_stamp_ns - kNow) / kPeriod;
+    EXPECT_EQ(of_step, (i * kPeriod - kLate) / kPeriod);
+    place(static_cast<double>(of_step) / kSteps);
+    const auto expected = apart.at(state);
+    ASSERT_TRUE(expected.has_value());
+    for (int k = 0; k < read->point_count; ++k) {
+      const double limit = expected->points[static_cast<std::size_t>(k)].depth_limit;
+      const double got = read->points[static_cast<std::size_t>(k)].depth_limit;
+      if (std::isfinite(limit)) {
+        EXPECT_NEAR(got, limit, 1e-9);
+      }
+    }
+    ++compared;
+  }
+  EXPECT_GT(compared, 15);
+  // States go on, diagrams do not come: after a second and a half there is none.
+  state.stamp_ns = kNow + kSteps * kPeriod + 2 * kSecond;
+  ASSERT_TRUE(core.accept_frame(state.stamp_ns));
+  core.add_robot_state(state);
+  core.advance(state.stamp_ns);
+  EXPECT_EQ(core.lobes(), nullptr);
 }
 
 TEST(Pipeline, AccelerometersAreCheckedBeforeTheMonitorIsBuilt) {
