@@ -117,6 +117,7 @@ std::vector<DepthBand> depth_bands(const Tool& tool, const Material& material, c
     for (std::size_t s = 0; s < speeds.size(); ++s) depths[s].push_back(limits[s].depth);
   }
   std::vector<DepthBand> bands;
+  bands.reserve(depths.size());
   for (const std::vector<double>& at_speed : depths) {
     bands.push_back(
         {depth_quantile(at_speed, 1.0 - confidence.probability), depth_quantile(at_speed, confidence.probability)});

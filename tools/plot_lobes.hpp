@@ -1,25 +1,20 @@
-// The picture of a stability lobe diagram: limit depth over spindle speed, the chatter frequency below, the cell's own
-// cut as a point.
+// The picture of stability lobes: limit depth over spindle speed, the chatter frequency below, and on top the cell's
+// own cut and cuts that were measured or judged.
 #pragma once
 
-#include <optional>
 #include <span>
-#include <string>
 
-#include "models/depth_limit.hpp"
+#include "tools/cut_points.hpp"
+#include "tools/lobe_study.hpp"
 #include "tools/plot.hpp"
 
 namespace stillcut {
 
-struct LobePicture {
-  std::string title, subtitle;
-  std::span<const double> speeds;  // rad/s
-  std::span<const DepthLimit> limits;
-  double max_depth = 0.0;  // m, drawn where there is no limit
-  double cut_speed = 0.0;  // rad/s, the cell's cut
-  double cut_depth = 0.0;  // m
-};
+inline constexpr std::size_t kMostLobeCurves = 8;  // as many as there are colours to tell them apart
 
-plot::Figure lobe_figure(const LobePicture& picture);
+// At most kMostLobeCurves curves. Speeds without a limit are shaded, not drawn as numbers. `cuts_are` says in the
+// legend where the verdicts of `cuts` come from.
+plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cuts = {},
+                         const std::string& cuts_are = "measured");
 
 }  // namespace stillcut
