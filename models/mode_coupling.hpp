@@ -27,8 +27,8 @@ DirectionMatrix mean_cutting_stiffness(const LinearCut& cut);
 
 // The limit of the damped structure, M q'' + C q' + (K + a W) q = 0 in modal coordinates: the smallest depth a with an
 // eigenvalue on the imaginary axis, which lie where det[I + a G(iw) W] = 0, G the receptance. Modes in the feed frame,
-// depth in m, frequency in rad/s. Process damping, which would depend on the spindle speed, is left out, so the line is
-// on the safe side. Throws std::invalid_argument for modes that are not physical and a depth that is not positive.
+// depth in m, frequency in rad/s. Process damping, which would depend on the spindle speed, is left out. Throws
+// std::invalid_argument for modes that are not physical and a depth that is not positive.
 ModeCouplingLimit mode_coupling_limit(const LinearCut& cut, std::span<const Mode> feed_frame_modes, double max_depth,
                                       double highest_frequency = std::numeric_limits<double>::infinity());
 

@@ -154,7 +154,7 @@ void draw(const Judged& judged, const StabilityOptions& options) {
   const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   Progress progress("lobes");
   const LobeStudy study = study_lobes(cell, question, [&](double share) { progress.update(share); });
-  plot::write_figure(lobe_figure(study, cuts, "predicted"), options.plot);
+  plot::write_figure(lobe_figure(study, cuts, kPredictedCuts), options.plot);
 }
 
 void run(const StabilityOptions& options) {

@@ -98,11 +98,14 @@ std::string extremes_text(const LobeStudy& study, const LobeCurve& curve) {
          << rad_s_to_rpm(study.question.speeds[static_cast<std::size_t>(limit - curve.limits.begin())]) << " rpm";
     return text.str();
   };
-  const std::string none = "none up to " + mm(study.question.settings.max_depth);
+  const auto named = [&](const char* which, auto limit) {
+    if (depth(*limit) == 0.0) return "unstable at every depth" + place(limit);
+    if (std::isinf(depth(*limit))) return "none up to " + mm(study.question.settings.max_depth) + place(limit);
+    return which + mm(depth(*limit)) + place(limit);
+  };
   if (depth(*highest) == 0.0) return "unstable at every depth and speed";
-  if (std::isinf(depth(*lowest))) return none + " at any speed";
-  return (depth(*lowest) == 0.0 ? "lowest: unstable at every depth" : "lowest " + mm(depth(*lowest))) + place(lowest) +
-         ", highest " + (std::isinf(depth(*highest)) ? none : mm(depth(*highest))) + place(highest);
+  if (std::isinf(depth(*lowest))) return "none up to " + mm(study.question.settings.max_depth) + " at any speed";
+  return named("lowest ", lowest) + ", " + named("highest ", highest);
 }
 
 }  // namespace
@@ -154,9 +157,9 @@ nlohmann::ordered_json lobes_json(const LobeStudy& study) {
 void print_lobes_summary(const LobeStudy& study, std::ostream& out) {
   const double max_depth = study.question.settings.max_depth;
   for (const LobeCurve& curve : study.curves) {
-    out << "posture " << curve_name(curve) << ": limit " << extremes_text(study, curve) << '\n'
-        << "  mode coupling below " << std::round(study.coupling_below / kTwoPi) << " Hz "
-        << coupling_text(curve.coupling, max_depth);
+    out << "posture " << curve_name(curve) << ": limit depth: " << extremes_text(study, curve) << '\n'
+        << "  mode coupling up to " << std::round(study.coupling_below / kTwoPi)
+        << " Hz: " << coupling_text(curve.coupling, max_depth);
     if (curve.undamped_coupling)
       out << " (without damping: " << coupling_text(*curve.undamped_coupling, max_depth) << ")";
     out << '\n';

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "drivers/files/csv.hpp"
@@ -139,22 +140,17 @@ void add_curve(const LobeStudy& study, std::size_t index, plot::Panel& depths, p
   frequencies.lines.push_back(std::move(frequency));
 }
 
-void add_cuts(std::span<const MeasuredCut> cuts, const std::string& cuts_are, plot::Panel& panel) {
-  struct Kind {
-    Verdict verdict;
-    const char* word;
-    plot::Color color;
-    plot::Marker marker;
-  };
-  for (const auto& [verdict, word, color, marker] :
-       {Kind{Verdict::stable, "stable", plot::kGreen, plot::Marker::disc},
-        Kind{Verdict::near_limit, "marginal", plot::kOrange, plot::Marker::diamond},
-        Kind{Verdict::unstable, "chatter", plot::kVermilion, plot::Marker::cross}}) {
+void add_cuts(std::span<const MeasuredCut> cuts, const CutLabels& labels, plot::Panel& panel) {
+  const std::tuple<Verdict, const std::string&, plot::Color, plot::Marker> kinds[] = {
+      {Verdict::stable, labels.stable, plot::kGreen, plot::Marker::disc},
+      {Verdict::near_limit, labels.near_limit, plot::kOrange, plot::Marker::diamond},
+      {Verdict::unstable, labels.unstable, plot::kVermilion, plot::Marker::cross}};
+  for (const auto& [verdict, label, color, marker] : kinds) {
     plot::Scatter points;
     points.color = color;
     points.marker = marker;
     points.size = 9.0;
-    points.label = cuts_are + ": " + word;
+    points.label = label;
     for (const MeasuredCut& cut : cuts) {
       if (cut.verdict != verdict) continue;
       points.x.push_back(cut.at.spindle_speed_rpm);
@@ -176,7 +172,7 @@ std::string subtitle_of(const LobeStudy& study) {
 
 }  // namespace
 
-plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cuts, const std::string& cuts_are) {
+plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cuts, const CutLabels& labels) {
   const std::vector<double>& speeds = study.question.speeds;
   const Cut& cell_cut = study.curves.front().cut;
   const bool with_cell_cut = cell_cut.spindle_speed >= speeds.front() && cell_cut.spindle_speed <= speeds.back();
@@ -194,15 +190,15 @@ plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cu
     add_curve(study, i, depths, frequencies);
     add_coupling(study, i, top, depths);
   }
-  add_cuts(cuts, cuts_are, depths);
   if (with_cell_cut) {
     depths.points.push_back({.x = {rad_s_to_rpm(cell_cut.spindle_speed)},
                              .y = {cell_cut.axial_depth * 1e3},
                              .color = plot::kInk,
-                             .size = 12.0,
+                             .size = 15.0,
                              .label = "the cell's cut",
                              .marker = plot::Marker::diamond});
   }
+  add_cuts(cuts, labels, depths);  // on top of the cell's cut, where it was made
 
   plot::Figure figure;
   const std::string posture = study.curves.front().predicted.posture.id;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "tools/cut_points.hpp"
 #include "tools/lobe_study.hpp"
@@ -12,9 +13,15 @@ namespace stillcut {
 
 inline constexpr std::size_t kMostLobeCurves = 8;  // as many as there are colours to tell them apart
 
-// At most kMostLobeCurves curves. Speeds without a limit are shaded, not drawn as numbers. `cuts_are` says in the
-// legend where the verdicts of `cuts` come from.
+// What the legend says of cuts that are stable, near the limit and unstable.
+struct CutLabels {
+  std::string stable, near_limit, unstable;
+};
+inline const CutLabels kMeasuredCuts{"measured: stable", "measured: marginal", "measured: chatter"};
+inline const CutLabels kPredictedCuts{"predicted: stable", "predicted: near the limit", "predicted: unstable"};
+
+// At most kMostLobeCurves curves. Speeds without a limit are shaded, not drawn as numbers.
 plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cuts = {},
-                         const std::string& cuts_are = "measured");
+                         const CutLabels& labels = kMeasuredCuts);
 
 }  // namespace stillcut

@@ -203,6 +203,36 @@ TEST(ModeCoupling, UndampedLimitOfTwoModesIsTheRootOfTheirDiscriminant) {
   }
 }
 
+TEST(ModeCoupling, LooksNoHigherThanAsked) {
+  std::mt19937_64 random(25);
+  int fast = 0, slow = 0;
+  for (int i = 0; i < 100; ++i) {
+    test::StabilityCase robot = random_robot(random);
+    robot.modes.push_back(mode_of(750, 0.02, 6e6, 1, 0));
+    robot.modes.push_back(mode_of(790, 0.02, 6e6, 0, 1));
+    constexpr double kDeepest = 0.02, kBelow = kTwoPi * 200.0;
+    const ModeCouplingLimit any = mode_coupling_limit(robot.cut, robot.modes, kDeepest);
+    const ModeCouplingLimit low = mode_coupling_limit(robot.cut, robot.modes, kDeepest, kBelow);
+    const ModeCouplingLimit undamped = undamped_mode_coupling_limit(robot.cut, robot.modes, kDeepest, kBelow);
+    if (std::isfinite(undamped.depth)) {
+      EXPECT_LE(undamped.frequency, kBelow);
+    }
+    EXPECT_GE(low.depth, any.depth);
+    if (any.frequency <= kBelow) {
+      EXPECT_EQ(low.depth, any.depth);
+    }
+    if (any.frequency > kBelow) ++fast;
+    if (std::isinf(low.depth)) continue;
+    ++slow;
+    EXPECT_LE(low.frequency, kBelow);
+    const Eigen::VectorXcd values =
+        Eigen::EigenSolver<Eigen::MatrixXd>(MeanCut(robot).state_matrix(low.depth), false).eigenvalues();
+    EXPECT_LT((values.array() - std::complex<double>(0.0, low.frequency)).abs().minCoeff(), 0.1) << i;
+  }
+  EXPECT_GT(fast, 5);
+  EXPECT_GT(slow, 5);
+}
+
 TEST(ModeCoupling, LimitFallsAsTheMaterialHardens) {
   std::mt19937_64 random(24);
   for (int i = 0; i < 50; ++i) {

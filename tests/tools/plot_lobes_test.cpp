@@ -78,12 +78,12 @@ TEST(LobeFigure, ShowsCutsByTheirVerdictAndTheCellsOwn) {
                                       {{5, 1600, 0.5}, Verdict::stable}};
   const plot::Figure figure = lobe_figure(study_of(1), cuts);
   const auto& points = figure.panels.at(0).points;
-  ASSERT_EQ(points.size(), 5u);  // the lone limit, three verdicts, the cell's cut
-  EXPECT_EQ(points[1].label, "measured: stable");
-  EXPECT_EQ(points[1].x.size(), 2u);
-  EXPECT_EQ(points[2].label, "measured: marginal");
-  EXPECT_EQ(points[3].label, "measured: chatter");
-  EXPECT_EQ(points[4].label, "the cell's cut");
+  ASSERT_EQ(points.size(), 5u);  // the lone limit, the cell's cut, three verdicts
+  EXPECT_EQ(points[1].label, "the cell's cut");
+  EXPECT_EQ(points[2].label, "measured: stable");
+  EXPECT_EQ(points[2].x.size(), 2u);
+  EXPECT_EQ(points[3].label, "measured: marginal");
+  EXPECT_EQ(points[4].label, "measured: chatter");
   EXPECT_EQ(figure.x.max, 7000);  // no cut is left out
   EXPECT_GT(figure.panels[0].y.max, 4.0);
 }
