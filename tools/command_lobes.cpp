@@ -1,7 +1,5 @@
 // stillcut lobes: the stability lobe diagram at a posture: how deep may be cut at which spindle speed.
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,12 +7,10 @@
 #include <stdexcept>
 
 #include "drivers/files/cell.hpp"
-#include "drivers/files/csv.hpp"
-#include "drivers/files/dynamics_map_file.hpp"
-#include "models/interpolation.hpp"
-#include "models/linear_cut.hpp"
-#include "models/lobes.hpp"
 #include "tools/commands.hpp"
+#include "tools/cut_points.hpp"
+#include "tools/lobe_study.hpp"
+#include "tools/output_file.hpp"
 #include "tools/plot_lobes.hpp"
 #include "tools/progress.hpp"
 
@@ -24,22 +20,14 @@ namespace {
 constexpr int kDefaultCount = 201;
 
 struct LobesOptions {
-  std::string cell, posture, speed, csv, plot;
-  std::optional<double> feed_direction_deg;
+  std::string cell, speed, cuts, tolerance, csv, plot;
+  std::vector<std::string> postures;
+  std::vector<double> feed_directions_deg;
   std::string method = "sdm";
   double max_depth_mm = 20.0;
+  std::optional<double> confidence;
+  int samples = Confidence{}.samples;
   bool json = false;
-};
-
-LobeMethod method_of(const LobesOptions& options) {
-  return options.method == "zoa" ? LobeMethod::zeroth_order : LobeMethod::floquet;
-}
-
-struct Lobes {
-  PredictedPosture predicted;
-  Cut cut;
-  std::vector<double> speeds;
-  std::vector<DepthLimit> limits;
 };
 
 // "MIN:MAX:COUNT" in rpm.
@@ -66,144 +54,86 @@ std::vector<double> speeds_of(const Cell& cell, const LobesOptions& options) {
   return equally_spaced_speeds(spindle.min_speed, spindle.max_speed, kDefaultCount);
 }
 
-PredictedPosture predict(const Cell& cell, const LobesOptions& options) {
-  const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
-  const DynamicsMap map = read_dynamics_map(dynamics.map);
-  std::string asked = options.posture.empty() ? dynamics.posture : options.posture;
-  if (asked.empty() && map.postures.size() == 1) asked = map.postures.front().id;
-  if (asked.empty()) {
-    throw InputError(options.cell, 0, "dynamics.posture: is missing; set it, or name a posture with --posture");
+// "frequency=0.03,damping=0.2,stiffness=0.1,ktc=0.1"; what is not named keeps its default.
+Tolerance parse_tolerance(const std::string& text) {
+  Tolerance tolerance;
+  const std::pair<const char*, double*> names[] = {{"frequency", &tolerance.modes.frequency},
+                                                   {"damping", &tolerance.modes.damping},
+                                                   {"stiffness", &tolerance.modes.stiffness},
+                                                   {"ktc", &tolerance.ktc}};
+  if (text.empty()) return tolerance;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    const auto* name = std::find_if(std::begin(names), std::end(names),
+                                    [&](const auto& candidate) { return part.substr(0, equals) == candidate.first; });
+    double value = 0.0;
+    if (name == std::end(names) || equals == part.size() ||
+        !CLI::detail::lexical_cast(part.substr(equals + 1), value) || !(value >= 0.0 && value < 1.0)) {
+      throw CLI::ValidationError("--tolerance", "'" + part +
+                                                    "' is not frequency=, damping=, stiffness= or ktc= with a relative "
+                                                    "standard deviation from 0 to below 1");
+    }
+    *name->second = value;
   }
-  try {
-    return predict_posture(map, find_posture(map, asked), {.modal = dynamics.modal, .power = dynamics.power});
-  } catch (const std::invalid_argument& error) {
-    throw InputError(dynamics.map.string(), 0, error.what());
-  }
+  return tolerance;
 }
 
-void warn(const LobesOptions& options, const std::string& line) {
-  std::cerr << "stillcut: " << options.cell << ": " << line << '\n';
-}
-
-Lobes compute(const LobesOptions& options) {
-  const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
-  const Tool& tool = require(cell, cell.tool, "tool");
-  const Material& material = require(cell, cell.material, "material");
-  Lobes lobes;
-  lobes.cut = require(cell, cell.cut, "cut");
-  if (options.feed_direction_deg) lobes.cut.feed_direction = deg_to_rad(*options.feed_direction_deg);
-  lobes.speeds = speeds_of(cell, options);
-  lobes.predicted = predict(cell, options);
-  for (const std::string& line : linear_cut_warnings(tool, lobes.cut)) warn(options, line);
-  if (lobes.predicted.outside) {
-    warn(options, "posture lies outside the map, farther from posture \"" + lobes.predicted.nearest +
-                      "\" than measured postures from each other; the lobes are an extrapolation");
+LobeQuestion question_of(const Cell& cell, const LobesOptions& options) {
+  LobeQuestion question;
+  question.postures = options.postures;
+  for (const double direction : options.feed_directions_deg) {
+    question.feed_directions.push_back(deg_to_rad(direction));
   }
-  Progress progress("lobes");
-  try {
-    lobes.limits = depth_limits(tool, material, lobes.cut, lobes.predicted.posture.modes, lobes.speeds,
-                                {.method = method_of(options), .max_depth = options.max_depth_mm * 1e-3},
-                                [&](double share) { progress.update(share); });
-  } catch (const std::invalid_argument& error) {
-    throw InputError(options.cell, 0, error.what());
-  }
-  return lobes;
+  question.speeds = speeds_of(cell, options);
+  question.settings.method = options.method == "zoa" ? LobeMethod::zeroth_order : LobeMethod::floquet;
+  question.settings.max_depth = options.max_depth_mm * 1e-3;
+  question.tolerance = parse_tolerance(options.tolerance);
+  if (options.confidence) question.confidence = Confidence{*options.confidence, options.samples};
+  return question;
 }
 
-// Speeds as users gave them: without the rounding of the way to rad/s and back.
-double clean_rpm(double speed) { return std::round(rad_s_to_rpm(speed) * 1e6) / 1e6; }
-
-void write_csv(const Lobes& lobes, std::ostream& out) {
-  out << "spindle_speed_rpm,a_lim_mm,chatter_frequency_hz\n";
-  for (std::size_t i = 0; i < lobes.limits.size(); ++i) {
-    const DepthLimit& limit = lobes.limits[i];
-    const std::string fields[] = {csv_number(clean_rpm(lobes.speeds[i])), csv_number(limit.depth * 1e3),
-                                  csv_number_or_empty(limit.chatter_frequency / kTwoPi)};
-    write_csv_row(out, fields);
-  }
-}
-
-void write_csv(const Lobes& lobes, const std::string& name) {
-  if (name == "-") return write_csv(lobes, std::cout);
-  std::ofstream file(name, std::ios::binary);
-  if (!file) throw InputError(name, 0, "cannot be written");
-  write_csv(lobes, file);
-  if (!file.flush()) throw InputError(name, 0, "cannot be written to the end; is the disk full?");
-}
-
-// The depth as JSON can hold it: a number, or "inf" and "nan" as in the CSV.
-nlohmann::ordered_json json_depth(double depth) {
-  if (std::isfinite(depth)) return depth * 1e3;
-  return csv_number(depth);
-}
-
-nlohmann::ordered_json to_json(const Lobes& lobes, const LobesOptions& options) {
-  const PredictedPosture& predicted = lobes.predicted;
-  nlohmann::ordered_json modes = nlohmann::json::array(), points = nlohmann::json::array();
-  for (const Mode& mode : predicted.posture.modes) {
-    modes.push_back({{"frequency_hz", mode.natural_frequency / kTwoPi},
-                     {"damping_ratio", mode.damping_ratio},
-                     {"stiffness_n_per_m", mode.stiffness},
-                     {"direction", mode.direction}});
-  }
-  double error = 0.0;
-  for (std::size_t i = 0; i < lobes.limits.size(); ++i) {
-    const DepthLimit& limit = lobes.limits[i];
-    const bool finite = std::isfinite(limit.depth);
-    constexpr const char* kKinds[] = {"hopf", "flip", "fold"};
-    points.push_back({{"spindle_speed_rpm", clean_rpm(lobes.speeds[i])},
-                      {"a_lim_mm", json_depth(limit.depth)},
-                      {"chatter_frequency_hz", finite ? nlohmann::json(limit.chatter_frequency / kTwoPi) : nullptr},
-                      {"instability", finite ? nlohmann::json(kKinds[static_cast<int>(limit.instability)]) : nullptr}});
-    error = std::max(error, limit.error_estimate);
-  }
-  return {{"posture", predicted.posture.id},
-          {"nearest_posture", predicted.nearest},
-          {"outside_map", predicted.outside},
-          {"method", options.method},
-          {"feed_direction_deg", rad_to_deg(lobes.cut.feed_direction)},
-          {"max_depth_mm", options.max_depth_mm},
-          {"relative_error_estimate", method_of(options) == LobeMethod::floquet ? nlohmann::json(error) : nullptr},
-          {"modes", modes},
-          {"points", points}};
-}
-
-// The lowest and the highest limit in a line for people.
-void summarise(const Lobes& lobes) {
-  const auto depth = [&](std::size_t i) { return std::isnan(lobes.limits[i].depth) ? 0.0 : lobes.limits[i].depth; };
-  std::size_t lowest = 0, highest = 0;
-  for (std::size_t i = 1; i < lobes.limits.size(); ++i) {
-    if (depth(i) < depth(lowest)) lowest = i;
-    if (depth(i) > depth(highest)) highest = i;
-  }
-  std::printf("posture %s: lowest limit %.3g mm at %.0f rpm, highest %.3g mm at %.0f rpm\n",
-              lobes.predicted.posture.id.c_str(), depth(lowest) * 1e3, rad_s_to_rpm(lobes.speeds[lowest]),
-              depth(highest) * 1e3, rad_s_to_rpm(lobes.speeds[highest]));
-}
-
-void run(const LobesOptions& options) {
+void check_usage(const LobesOptions& options) {
   if (options.json && options.csv == "-") {
     throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
   }
-  const Lobes lobes = compute(options);
-  const bool nothing_asked = options.csv.empty() && options.plot.empty() && !options.json;
-  if (nothing_asked || !options.csv.empty()) write_csv(lobes, nothing_asked ? "-" : options.csv);
-  if (!options.plot.empty()) {
-    const double direction = rad_to_deg(lobes.cut.feed_direction);
-    LobePicture picture{.title = "Stability lobes, posture " + lobes.predicted.posture.id,
-                        .subtitle = "feed direction " + csv_number(std::round(direction * 100.0) / 100.0) + "°, " +
-                                    (method_of(options) == LobeMethod::floquet ? "Floquet" : "zeroth order"),
-                        .speeds = lobes.speeds,
-                        .limits = lobes.limits,
-                        .max_depth = options.max_depth_mm * 1e-3,
-                        .cut_speed = lobes.cut.spindle_speed,
-                        .cut_depth = lobes.cut.axial_depth};
-    plot::write_figure(lobe_figure(picture), options.plot);
+  if (!options.tolerance.empty() && !options.confidence) {
+    throw CLI::ValidationError("--tolerance", "goes with --confidence");
   }
+  if (!options.cuts.empty() && options.plot.empty()) throw CLI::ValidationError("--cuts", "goes with --plot");
+  const std::size_t curves =
+      std::max<std::size_t>(1, options.postures.size()) * std::max<std::size_t>(1, options.feed_directions_deg.size());
+  if (!options.plot.empty() && curves > kMostLobeCurves) {
+    throw CLI::ValidationError("--plot", "a picture holds at most " + std::to_string(kMostLobeCurves) +
+                                             " curves; name fewer postures or feed directions");
+  }
+  if (options.confidence && options.samples * (1.0 - *options.confidence) < 0.5) {
+    throw CLI::ValidationError("--samples", "too few for this confidence; at least 0.5/(1 - confidence) are needed");
+  }
+  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+}
+
+void run(const LobesOptions& options) {
+  check_usage(options);
+  const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
+  const LobeQuestion question = question_of(cell, options);
+  std::vector<MeasuredCut> cuts;
+  if (!options.cuts.empty()) cuts = read_measured_cuts(options.cuts);
+  Progress progress("lobes");
+  const LobeStudy study = study_lobes(cell, question, [&](double share) { progress.update(share); });
+  progress.finish();
+  for (const std::string& line : study.warnings) std::cerr << "stillcut: " << options.cell << ": " << line << '\n';
+
+  const bool nothing_asked = options.csv.empty() && options.plot.empty() && !options.json;
+  if (nothing_asked || !options.csv.empty()) {
+    OutputFile file(nothing_asked ? "-" : options.csv);
+    write_lobes_csv(study, file.stream());
+    file.finish();
+  }
+  if (!options.plot.empty()) plot::write_figure(lobe_figure(study, cuts), options.plot);
   if (options.json) {
-    std::cout << to_json(lobes, options).dump() << '\n';
+    std::cout << lobes_json(study).dump() << '\n';
   } else if (!nothing_asked && options.csv != "-") {
-    summarise(lobes);
+    print_lobes_summary(study, std::cout);
   }
 }
 
@@ -213,11 +143,15 @@ void add_lobes_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("lobes", "How deep may be cut at which spindle speed: the stability lobes");
   const auto options = std::make_shared<LobesOptions>();
   command->add_option("CELL", options->cell, "Cell file")->required();
-  command->add_option("--posture", options->posture,
-                      "Id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm where the machine has no joints "
-                      "(default: the cell's)");
-  command->add_option("--feed-direction", options->feed_direction_deg,
-                      "Degrees from +X toward +Y (default: the cell's)");
+  command
+      ->add_option("--posture", options->postures,
+                   "Id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm where the machine has no joints "
+                   "(default: the cell's); again for a further one")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--feed-direction", options->feed_directions_deg,
+                   "Degrees from +X toward +Y (default: the cell's); again for a further one")
+      ->allow_extra_args(false);
   command->add_option("--method", options->method, "sdm: converged Floquet solution; zoa: zeroth order, a first look")
       ->capture_default_str()
       ->check(CLI::IsMember({"sdm", "zoa"}));
@@ -225,13 +159,28 @@ void add_lobes_command(CLI::App& app) {
   command->add_option("--max-depth", options->max_depth_mm, "Largest depth to look at, mm")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 1e4).description(""));
+  command
+      ->add_option("--confidence", options->confidence,
+                   "Probability, 0.5 to 0.99: adds the depth that is stable with it, as a band")
+      ->check(CLI::Range(0.5, 0.99).description(""));
+  command->add_option("--tolerance", options->tolerance,
+                      "Relative standard deviations of what is known of the cell "
+                      "(default: frequency=0.03,damping=0.2,stiffness=0.1,ktc=0.1)");
+  command->add_option("--samples", options->samples, "Diagrams computed for the band, each as long as the lobes' own")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000).description(""));
+  command->add_option("--cuts", options->cuts,
+                      "CSV file of cuts made, spindle_speed_rpm,axial_depth_mm,verdict (stable, marginal or chatter), "
+                      "to be drawn on top");
   command->add_option("--csv", options->csv, "Write the diagram; - is standard output (so without any output option)");
   command->add_option("--plot", options->plot, "Draw the diagram to a .svg or .png file");
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer(
-      "Example: the lobes for a feed along +Y, as a table and a picture:\n"
-      "  stillcut lobes examples/demo-cell/cell.toml --feed-direction 90 --speed 2800:3800:101 \\\n"
-      "    --csv lobes.csv --plot lobes.svg");
+      "Examples: the lobes for a feed along +Y, as a table and a picture; two feeds at two postures in one picture:\n"
+      "  stillcut lobes examples/demo-cell/cell.toml --feed-direction 90 --speed 6000:14000:101 \\\n"
+      "    --csv lobes.csv --plot lobes.svg\n"
+      "  stillcut lobes examples/demo-cell/cell.toml --posture home --posture far --feed-direction 0 \\\n"
+      "    --feed-direction 90 --plot lobes.png");
   command->callback([options] { run(*options); });
 }
 

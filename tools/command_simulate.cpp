@@ -1,7 +1,6 @@
 // stillcut simulate: mills in simulated time, and writes what the tool did and what the cell's sensors would have sent.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,11 +9,11 @@
 #include "drivers/can/candump_log.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/files/csv.hpp"
-#include "drivers/files/dynamics_map_file.hpp"
-#include "models/interpolation.hpp"
 #include "models/milling_simulation.hpp"
 #include "tools/can_encoder.hpp"
+#include "tools/cell_posture.hpp"
 #include "tools/commands.hpp"
+#include "tools/output_file.hpp"
 #include "tools/plot_simulation.hpp"
 #include "tools/progress.hpp"
 
@@ -58,24 +57,12 @@ Schedule parse_schedule(const std::string& option, const std::string& text, doub
   return schedule;
 }
 
-std::vector<Mode> modes_at_posture(const Cell& cell, const std::string& asked) {
-  const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
-  const DynamicsMap map = read_dynamics_map(dynamics.map);
-  try {
-    if (asked.empty() && dynamics.posture.empty() && map.postures.size() == 1) return map.postures.front().modes;
-    const Posture posture = find_posture(map, asked.empty() ? dynamics.posture : asked);
-    return predict_posture(map, posture, {.modal = dynamics.modal, .power = dynamics.power}).posture.modes;
-  } catch (const std::invalid_argument& error) {
-    throw InputError(cell.file.string(), 0, std::string("dynamics.posture: ") + error.what());
-  }
-}
-
 MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
   MillingSetup setup;
   setup.tool = require(cell, cell.tool, "tool");
   setup.material = require(cell, cell.material, "material");
   setup.cut = require(cell, cell.cut, "cut");
-  setup.modes = modes_at_posture(cell, options.posture);
+  setup.modes = predicted_posture(cell, read_cell_dynamics(cell), options.posture).posture.modes;
   if (!options.depth.empty()) setup.axial_depth = parse_schedule("--depth", options.depth, 1e-3);
   if (!options.speed.empty()) setup.spindle_speed = parse_schedule("--speed", options.speed, rpm_to_rad_s(1.0));
   setup.force_noise = options.force_noise;
@@ -94,24 +81,6 @@ double row_rate_hz(const Cell& cell, const MillingSetup& setup, const SimulateOp
     for (const AccelerometerSettings& sensor : cell.can->accelerometers) rate = std::max(rate, sensor.sample_rate_hz);
   return rate;
 }
-
-// A text file, or standard output for "-"; says so when it cannot be written to the end.
-class OutputFile {
- public:
-  explicit OutputFile(const std::string& name) : name_{name} {
-    if (name == "-") return;
-    file_.open(name, std::ios::binary);
-    if (!file_) throw InputError(name, 0, "cannot be written");
-  }
-  std::ostream& stream() { return name_ == "-" ? std::cout : file_; }
-  void finish() {
-    if (!stream().flush()) throw InputError(name_, 0, "cannot be written to the end; is the disk full?");
-  }
-
- private:
-  std::string name_;
-  std::ofstream file_;
-};
 
 class CsvOutput {
  public:

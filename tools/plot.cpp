@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "tools/plot_canvas.hpp"
+#include "tools/plot_legend.hpp"
 #include "tools/plot_scale.hpp"
 
 namespace stillcut::plot {
 namespace {
 
 constexpr double kLeft = 92, kRight = 28, kScaleRight = 92, kTop = 24, kBottom = 52, kBetween = 20, kTitleRoom = 20;
-constexpr double kSmall = 11.5, kMiddle = 13.0, kLarge = 19.0;
+constexpr double kSmall = kSmallText, kMiddle = kPanelText, kLarge = 19.0;
 constexpr Color kGrid{0.90, 0.90, 0.92}, kFrame{0.45, 0.45, 0.48};
 
 // From data to px in one panel.
@@ -122,20 +123,29 @@ void draw_color_scale(Canvas& canvas, const View& view, const Image& image) {
               {.size = kSmall, .align = Align::center, .upright = true});
 }
 
+std::vector<double> mapped(std::vector<double> values, auto&& map) {
+  std::transform(values.begin(), values.end(), values.begin(), map);
+  return values;
+}
+
 void draw_line(Canvas& canvas, const View& view, const Line& line) {
   const Line few = decimated(line, view.x, static_cast<int>(view.box.width() * 1.5));
-  std::vector<double> x(few.x.size()), y(few.x.size());
-  std::transform(few.x.begin(), few.x.end(), x.begin(), [&](double v) { return view.px(v); });
-  std::transform(few.y.begin(), few.y.end(), y.begin(), [&](double v) { return view.py(v); });
-  canvas.polyline(x, y, few);
+  canvas.polyline(mapped(few.x, [&](double v) { return view.px(v); }),
+                  mapped(few.y, [&](double v) { return view.py(v); }), few);
 }
 
 void draw_data(Canvas& canvas, const View& view, const Panel& panel) {
   canvas.clip(view.box);
   if (panel.image) canvas.rectangle(view.box, scale_color(0.0));
   for (const Band& band : panel.bands)
-    canvas.rectangle({view.px(band.begin), view.box.top, view.px(band.end), view.box.bottom}, band.color, band.opacity);
+    canvas.rectangle({view.px(band.begin), view.box.bottom - band.top * view.box.height(), view.px(band.end),
+                      view.box.bottom - band.bottom * view.box.height()},
+                     band.color, band.opacity);
   if (!panel.image) draw_grid(canvas, view);
+  for (const Area& area : panel.areas)
+    canvas.area(mapped(area.x, [&](double v) { return view.px(v); }),
+                mapped(area.low, [&](double v) { return view.py(v); }),
+                mapped(area.high, [&](double v) { return view.py(v); }), area.color, area.opacity);
   if (const auto& image = panel.image; image && image->columns > 0 && image->rows > 0)
     canvas.image({view.px(image->x_begin), view.py(image->y_end), view.px(image->x_end), view.py(image->y_begin)},
                  *image);
@@ -143,11 +153,11 @@ void draw_data(Canvas& canvas, const View& view, const Panel& panel) {
   for (const Scatter& points : panel.points)
     for (std::size_t i = 0; i < points.x.size(); ++i)
       if (std::isfinite(points.x[i]) && std::isfinite(points.y[i]))
-        canvas.disc(view.px(points.x[i]), view.py(points.y[i]), points.size, points.color);
+        canvas.marker(view.px(points.x[i]), view.py(points.y[i]), points.size, points.color, points.marker);
   for (const Limit& limit : panel.limits) {
     canvas.segment(view.box.left, view.py(limit.y), view.box.right, view.py(limit.y), limit.color, 1.3, true);
     const double above = view.py(limit.y) - view.box.top > 18.0 ? -5.0 : 15.0;  // or below it at the panel's upper edge
-    canvas.text(view.box.left + 8, view.py(limit.y) + above, limit.text,
+    canvas.text(view.box.left + 8 + limit.text_at * view.box.width(), view.py(limit.y) + above, limit.text,
                 {.size = kSmall, .color = limit.color, .halo = true});
   }
   for (const EventMark& event : panel.events)
@@ -177,29 +187,6 @@ void draw_texts(Canvas& canvas, const View& view, const Panel& panel) {
   }
 }
 
-// In the title's line, from the right: what each line, marker and band is.
-void draw_legend(Canvas& canvas, const View& view, const Panel& panel) {
-  double x = view.box.right;
-  const double y = view.box.top - 10;
-  const auto entry = [&](const std::string& label, auto&& sample) {
-    if (label.empty()) return;
-    x -= canvas.text_width(label, kSmall);
-    canvas.text(x, y + 4, label, {.size = kSmall});
-    if (panel.image) canvas.rectangle({x - 30, y - 7, x - 4, y + 6}, scale_color(0.25));  // as the data's ground is
-    sample(x - 28, x - 6);
-    x -= 44;
-  };
-  for (auto i = panel.bands.rbegin(); i != panel.bands.rend(); ++i)
-    entry(i->label, [&](double a, double b) {
-      canvas.rectangle({a, y - 6, b, y + 5}, i->color, std::min(1.0, i->opacity * 1.5));
-    });
-  for (auto i = panel.points.rbegin(); i != panel.points.rend(); ++i)
-    entry(i->label, [&](double a, double b) { canvas.disc(0.5 * (a + b), y, std::max(6.0, i->size), i->color); });
-  for (auto i = panel.lines.rbegin(); i != panel.lines.rend(); ++i)
-    entry(i->label,
-          [&](double a, double b) { canvas.segment(a, y, b, y, i->color, std::max(1.5, i->width), i->dashed); });
-}
-
 }  // namespace
 
 void write_figure(const Figure& figure, const std::filesystem::path& file) {
@@ -215,21 +202,23 @@ void write_figure(const Figure& figure, const std::filesystem::path& file) {
     shares += panel.height;
     with_scale = with_scale || panel.image;
   }
-  const double gaps = static_cast<double>(figure.panels.size()) * (kBetween + kTitleRoom);
+  const double right = figure.width - (with_scale ? kScaleRight : kRight);
+  double gaps = 0.0;
+  const auto room_above = [&](const Panel& panel) {
+    return kBetween + kTitleRoom + legend_overhang(canvas, {kLeft, 0.0, right, 0.0}, panel);
+  };
+  for (const Panel& panel : figure.panels) gaps += room_above(panel);
   const double room = figure.height - top - kBottom - gaps;
   const Range x = x_range(figure);
   for (const Panel& panel : figure.panels) {
-    top += kBetween + kTitleRoom;
+    top += room_above(panel);
     const double bottom = top + room * panel.height / shares;
-    const View view{{kLeft, top, figure.width - (with_scale ? kScaleRight : kRight), bottom},
-                    x,
-                    y_range(panel),
-                    panel.y.logarithmic};
+    const View view{{kLeft, top, right, bottom}, x, y_range(panel), panel.y.logarithmic};
     draw_data(canvas, view, panel);
     draw_axes(canvas, view, panel, figure.x, &panel == &figure.panels.back());
     if (panel.image) draw_color_scale(canvas, view, *panel.image);
     draw_texts(canvas, view, panel);
-    draw_legend(canvas, view, panel);
+    draw_legend(canvas, view.box, panel);
     top = bottom;
   }
   canvas.finish();

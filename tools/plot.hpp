@@ -29,17 +29,28 @@ struct Line {
   std::string label;  // in the legend; empty: not there
 };
 
+enum class Marker { disc, diamond, cross };
+
 struct Scatter {
   std::vector<double> x, y;
   Color color = kVermilion;
   double size = 5.0;  // diameter, px
   std::string label;
+  Marker marker = Marker::disc;
 };
 
 struct Band {  // a stretch of the x axis, shaded
   double begin = 0.0, end = 0.0;
   Color color = kSkyBlue;
   double opacity = 0.18;
+  std::string label;
+  double bottom = 0.0, top = 1.0;  // share of the panel's height
+};
+
+struct Area {                        // between two lines, shaded
+  std::vector<double> x, low, high;  // same length
+  Color color = kSkyBlue;
+  double opacity = 0.25;
   std::string label;
 };
 
@@ -53,6 +64,7 @@ struct Limit {  // a horizontal dashed line, its text at the left end
   double y = 0.0;
   std::string text;
   Color color = kVermilion;
+  double text_at = 0.0;  // or this share of the panel's width further right, beside another limit's text
 };
 
 struct Note {  // text in the panel at a point of the data
@@ -82,6 +94,7 @@ struct Panel {
   double height = 1.0;  // share of the figure's height, relative to the other panels
   std::optional<Image> image;
   std::vector<Band> bands;
+  std::vector<Area> areas;
   std::vector<Line> lines;
   std::vector<Scatter> points;
   std::vector<Limit> limits;

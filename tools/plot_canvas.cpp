@@ -106,6 +106,27 @@ void Canvas::disc(double x, double y, double diameter, Color color) {
   cairo_stroke(cairo_.get());
 }
 
+void Canvas::marker(double x, double y, double size, Color color, Marker marker) {
+  if (marker == Marker::disc) return disc(x, y, size, color);
+  const double reach = 0.5 * size;
+  if (marker == Marker::cross) {
+    segment(x - reach, y - reach, x + reach, y + reach, color, 2.4, false);
+    segment(x - reach, y + reach, x + reach, y - reach, color, 2.4, false);
+    return;
+  }
+  area({x - reach, x, x + reach}, {y, y + reach, y}, {y, y - reach, y}, color, 1.0);
+}
+
+void Canvas::area(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
+                  Color color, double opacity) {
+  if (x.empty()) return;
+  set_color(color, opacity);
+  cairo_new_path(cairo_.get());
+  for (std::size_t i = 0; i < x.size(); ++i) cairo_line_to(cairo_.get(), x[i], low[i]);
+  for (std::size_t i = x.size(); i > 0; --i) cairo_line_to(cairo_.get(), x[i - 1], high[i - 1]);
+  cairo_fill(cairo_.get());
+}
+
 void Canvas::image(Box box, const Image& image) {
   const std::unique_ptr<cairo_surface_t, Close> raster(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.columns, image.rows));

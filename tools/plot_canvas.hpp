@@ -34,10 +34,15 @@ class Canvas {
   void segment(double x0, double y0, double x1, double y1, Color color, double width, bool dashed,
                double opacity = 1.0);
   void disc(double x, double y, double diameter, Color color);
+  void marker(double x, double y, double size, Color color, Marker marker);
   void image(Box box, const Image& image);
 
   // A line through points that may be NaN: there the pen lifts.
   void polyline(const std::vector<double>& x, const std::vector<double>& y, const Line& style);
+
+  // The space between two lines over the same x.
+  void area(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high, Color color,
+            double opacity);
 
   struct TextStyle {
     double size = 12.0;

@@ -1,25 +1,27 @@
-// The picture of a stability lobe diagram: limit depth over spindle speed, the chatter frequency below, the cell's own
-// cut as a point.
+// The picture of stability lobes: limit depth over spindle speed, the chatter frequency below, and on top the cell's
+// own cut and cuts that were measured or judged.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
-#include "models/depth_limit.hpp"
+#include "tools/cut_points.hpp"
+#include "tools/lobe_study.hpp"
 #include "tools/plot.hpp"
 
 namespace stillcut {
 
-struct LobePicture {
-  std::string title, subtitle;
-  std::span<const double> speeds;  // rad/s
-  std::span<const DepthLimit> limits;
-  double max_depth = 0.0;  // m, drawn where there is no limit
-  double cut_speed = 0.0;  // rad/s, the cell's cut
-  double cut_depth = 0.0;  // m
-};
+inline constexpr std::size_t kMostLobeCurves = 8;  // as many as there are colours to tell them apart
 
-plot::Figure lobe_figure(const LobePicture& picture);
+// What the legend says of cuts that are stable, near the limit and unstable.
+struct CutLabels {
+  std::string stable, near_limit, unstable;
+};
+inline const CutLabels kMeasuredCuts{"measured: stable", "measured: marginal", "measured: chatter"};
+inline const CutLabels kPredictedCuts{"predicted: stable", "predicted: near the limit", "predicted: unstable"};
+
+// At most kMostLobeCurves curves. Speeds without a limit are shaded, not drawn as numbers.
+plot::Figure lobe_figure(const LobeStudy& study, std::span<const MeasuredCut> cuts = {},
+                         const CutLabels& labels = kMeasuredCuts);
 
 }  // namespace stillcut

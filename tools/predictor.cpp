@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "drivers/files/dynamics_map_file.hpp"
 #include "models/interpolation.hpp"
 #include "models/lobes.hpp"
+#include "tools/cell_posture.hpp"
 
 namespace stillcut {
 namespace {
@@ -29,27 +29,14 @@ bool same_question(const RobotState& a, const RobotState& b) {
 }  // namespace
 
 Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
-  const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
   tool_ = require(cell, cell.tool, "tool");
   material_ = require(cell, cell.material, "material");
   cut_ = require(cell, cell.cut, "cut");
   spindle_ = require(cell, cell.spindle, "spindle");
-  map_ = read_dynamics_map(dynamics.map);
-  interpolation_ = {.modal = dynamics.modal, .power = dynamics.power};
-  if (dynamics.posture.empty()) {
-    if (map_.postures.size() != 1) {
-      throw InputError(cell_file_, 0,
-                       "dynamics.posture: is missing; name one of the map's postures, for example \"" +
-                           map_.postures.front().id + "\"");
-    }
-    posture_ = map_.postures.front();
-    return;
-  }
-  try {
-    posture_ = find_posture(map_, dynamics.posture);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(cell_file_, 0, std::string("dynamics.posture: ") + error.what());
-  }
+  CellDynamics dynamics = read_cell_dynamics(cell);
+  map_ = std::move(dynamics.map);
+  interpolation_ = dynamics.interpolation;
+  posture_ = posture_of(cell, map_);
 }
 
 NominalPrediction Predictor::nominal() const {

@@ -8,5 +8,6 @@ int main(int argc, char** argv) {
   stillcut::add_lobes_command(app);
   stillcut::add_replay_command(app);
   stillcut::add_simulate_command(app);
+  stillcut::add_stability_command(app);
   return stillcut::run_command_line(app, argc, argv);
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "drivers/files/input_error.hpp"
+#include "drivers/files/spelling.hpp"
 #include "drivers/files/text_file.hpp"
 
 namespace stillcut {
@@ -150,6 +151,17 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
     rows.push_back(row);
   }
   return {file, header_line, std::move(header), std::move(rows)};
+}
+
+void check_column_names(const CsvTable& table, std::span<const std::string> known) {
+  for (const std::string& name : table.header()) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string_view meant = nearest_name(name, known);
+    if (!meant.empty() && !table.find_column(meant)) {
+      throw InputError(table.file(), table.header_line(),
+                       name + ": unknown column; did you mean " + std::string(meant) + "?");
+    }
+  }
 }
 
 std::string csv_number(double value) {

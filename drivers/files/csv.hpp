@@ -50,6 +50,10 @@ class CsvTable {
 CsvTable read_csv(const std::filesystem::path& file);
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
+// A column of the user's own is ignored, but one that looks like a misspelt known column, which the header lacks, is an
+// InputError.
+void check_column_names(const CsvTable& table, std::span<const std::string> known);
+
 // Number in the shortest form that reads back as the same double; "nan", "inf", "-inf".
 std::string csv_number(double value);
 // As csv_number, but empty for NaN: not applicable.

@@ -7,7 +7,6 @@
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
-#include "drivers/files/spelling.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
@@ -24,18 +23,6 @@ const std::vector<std::string> kModeColumns{"frequency_hz", "damping_ratio", "st
 std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
-}
-
-// A column of the user's own is ignored, but one that looks like a misspelt column of the map is not.
-void check_spelling(const CsvTable& table, const std::vector<std::string>& known) {
-  for (const std::string& name : table.header()) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string_view meant = nearest_name(name, known);
-    if (!meant.empty() && !table.find_column(meant)) {
-      throw InputError(table.file(), table.header_line(),
-                       name + ": unknown column; did you mean " + std::string(meant) + "?");
-    }
-  }
 }
 
 template <std::size_t N>
@@ -64,7 +51,7 @@ bool same_place(const DynamicsMap& map, const Posture& a, const Posture& b) {
 }
 
 DynamicsMap read_postures(const CsvTable& table, std::vector<const CsvRow*>& rows) {
-  check_spelling(table, joined(joined({"posture"}, kJointColumns), kPositionColumns));
+  check_column_names(table, joined(joined({"posture"}, kJointColumns), kPositionColumns));
   DynamicsMap map;
   map.has_joints = std::any_of(kJointColumns.begin(), kJointColumns.end(),
                                [&](const std::string& name) { return table.find_column(name).has_value(); });
@@ -116,7 +103,7 @@ Mode read_mode(const CsvTable& table, const CsvRow& row, const std::array<std::s
 }
 
 void read_modes(const CsvTable& table, DynamicsMap& map) {
-  check_spelling(table, joined({"posture", "mode"}, kModeColumns));
+  check_column_names(table, joined({"posture", "mode"}, kModeColumns));
   const std::size_t id_column = table.require_column("posture");
   const std::size_t number_column = table.require_column("mode");
   const auto columns = find_columns<6>(table, kModeColumns);
