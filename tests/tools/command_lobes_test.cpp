@@ -149,7 +149,9 @@ TEST(LobesCommand, RefusesWhatItCannotDo) {
   refused({"--confidence", "0.9", "--tolerance", "ktc"}, 2, "'ktc'");
   refused({"--confidence", "0.9", "--tolerance", "ktc=1.5"}, 2, "ktc=1.5");
   cell.change("teeth = 2", "teeth = 2\npitch_deg = [170.0, 190.0]");
-  refused({}, 3, "cell.toml: pitch_deg: ");
+  const Finished uneven = run(lobes({}), cell.path());  // is no longer refused: teeth of unequal pitch have lobes
+  EXPECT_EQ(uneven.exit_code, 0) << uneven.err;
+  EXPECT_THAT(uneven.out, HasSubstr("9000,"));
   std::vector<std::string> many = lobes({"--plot", "p.svg"});
   for (int i = 0; i < 9; ++i) many.insert(many.end(), {"--feed-direction", std::to_string(10 * i)});
   EXPECT_EQ(run(many, cell.path()).exit_code, 2);

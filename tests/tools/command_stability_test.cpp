@@ -142,7 +142,9 @@ TEST(StabilityCommand, RefusesBadCellsPosturesAndUsage) {
   refused({"--json", "--csv", "-"}, 2, "--json");
   refused({"--feed-direction", "east"}, 2, "--feed-direction");
   cell.change("shape = \"end\"", "shape = \"ball\"");
-  refused({}, 3, "cell.toml: shape: ");
+  const Finished ball = run(stability({"--csv", "-"}), cell.path());  // ball ends are covered
+  EXPECT_EQ(ball.exit_code, 0) << ball.err;
+  EXPECT_THAT(ball.out, HasSubstr("8500,1,"));
   const Finished missing = run({"stillcut", "stability", "cell.toml"}, cell.path());
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.err, HasSubstr("--points"));
