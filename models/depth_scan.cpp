@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace stillcut {
 namespace {
@@ -42,6 +43,10 @@ DepthBracket first_crossing(CutAtSpeed& cutting, const DepthBracket& bracket) {
 }
 
 }  // namespace
+
+void check_max_depth(double max_depth) {
+  if (!(max_depth > 0.0) || !std::isfinite(max_depth)) throw std::invalid_argument("largest depth: must be positive");
+}
 
 DepthScan scan_depths(CutAtSpeed& cutting, double max_depth) {
   constexpr double kLookCloser = 0.85;  // above this the radius may pass 1 between two steps and come back

@@ -18,6 +18,9 @@ struct DepthScan {
   bool always_unstable = false;  // down to a billionth of the largest depth
 };
 
+// Throws std::invalid_argument unless the largest depth of a search (m) is positive and finite.
+void check_max_depth(double max_depth);
+
 // From a 500th of the largest depth (m) up, in steps of 15 %, with a closer look at peaks of the radius just below 1.
 DepthScan scan_depths(CutAtSpeed& cutting, double max_depth);
 

@@ -90,9 +90,7 @@ FloquetPoint floquet_point(const LinearCut& cut, std::span<const Mode> modes, do
 
 DepthLimit floquet_depth_limit(const LinearCut& cut, std::span<const Mode> modes, double speed,
                                const DepthSearch& search) {
-  if (!(search.max_depth > 0.0) || !std::isfinite(search.max_depth)) {
-    throw std::invalid_argument("largest depth: must be positive");
-  }
+  check_max_depth(search.max_depth);
   if (!(search.tolerance > 0.0)) throw std::invalid_argument("tolerance: must be positive");
   constexpr double kNearlyUnstable = 0.99;  // a scan this near 1 is repeated at a finer level before it says "stable"
   constexpr double kFineTolerance = 1e-2;   // of the wanted tolerance, for the root at one level

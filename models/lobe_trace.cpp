@@ -145,9 +145,7 @@ class Trace {
 
 std::vector<DepthLimit> traced_depth_limits(const LinearCut& cut, std::span<const Mode> modes,
                                             std::span<const double> speeds, const TraceSettings& settings) {
-  if (!(settings.max_depth > 0.0) || !std::isfinite(settings.max_depth)) {
-    throw std::invalid_argument("largest depth: must be positive");
-  }
+  check_max_depth(settings.max_depth);
   if (speeds.empty()) return {};
   return Trace(cut, modes, speeds, settings).run();
 }

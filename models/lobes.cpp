@@ -17,11 +17,25 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-void refuse_too_many(std::span<const Mode> modes) {
-  if (modes.size() <= kMostFloquetModes) return;
-  throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
-                              " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
-                              "; use interpolation = \"modal\", or method zoa");
+// How the Floquet limits at the given speeds are found.
+using FloquetLimits = std::function<std::vector<DepthLimit>(const LinearCut&, std::span<const Mode> feed_frame_modes)>;
+
+// Limits by the method asked; what is computed is checked and turned into the feed frame here.
+std::vector<DepthLimit> limits_by(const FloquetLimits& floquet, const Tool& tool, const Material& material,
+                                  const Cut& cut, std::span<const Mode> modes, std::span<const double> speeds,
+                                  const LobeSettings& settings) {
+  check_modes(modes);
+  const LinearCut linear = linear_cut(tool, material, cut);
+  const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
+  if (settings.method == LobeMethod::zeroth_order) {
+    return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
+  }
+  if (modes.size() > kMostFloquetModes) {
+    throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
+                                " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
+                                "; use interpolation = \"modal\", or method zoa");
+  }
+  return floquet(linear, turned);
 }
 
 }  // namespace
@@ -56,32 +70,16 @@ std::vector<double> equally_spaced_speeds(double first, double last, int count) 
 std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material, const Cut& cut,
                                      std::span<const Mode> modes, std::span<const double> speeds,
                                      const LobeSettings& settings, const std::function<void(double)>& progress) {
-  check_modes(modes);
-  const LinearCut linear = linear_cut(tool, material, cut);
-  const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
-  if (settings.method == LobeMethod::zeroth_order) {
-    return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
-  }
-  refuse_too_many(modes);
-  std::vector<DepthLimit> limits;
-  for (const double speed : speeds) {
-    limits.push_back(floquet_depth_limit(linear, turned, speed, {.max_depth = settings.max_depth}));
-    if (progress) progress(static_cast<double>(limits.size()) / static_cast<double>(speeds.size()));
-  }
-  return limits;
+  const auto search = [&](const LinearCut& linear, std::span<const Mode> turned) {
+    std::vector<DepthLimit> limits;
+    for (const double speed : speeds) {
+      limits.push_back(floquet_depth_limit(linear, turned, speed, {.max_depth = settings.max_depth}));
+      if (progress) progress(static_cast<double>(limits.size()) / static_cast<double>(speeds.size()));
+    }
+    return limits;
+  };
+  return limits_by(search, tool, material, cut, modes, speeds, settings);
 }
-
-namespace {
-
-std::vector<DepthLimit> traced_limits(const Tool& tool, const Material& material, const Cut& cut,
-                                      std::span<const Mode> modes, std::span<const double> speeds, double max_depth) {
-  check_modes(modes);
-  refuse_too_many(modes);
-  const std::vector<Mode> turned = modes_in_feed_frame(modes, cut.feed_direction);
-  return traced_depth_limits(linear_cut(tool, material, cut), turned, speeds, {.max_depth = max_depth});
-}
-
-}  // namespace
 
 LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
                                  const SpindleLimits& spindle, std::span<const Mode> modes,
@@ -90,9 +88,10 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
     throw std::invalid_argument("lobe diagram: needs 2 to " + std::to_string(LobeDiagram::kMaxPoints) + " points");
   }
   const std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, settings.points);
-  const std::vector<DepthLimit> limits = settings.method == LobeMethod::floquet
-                                             ? traced_limits(tool, material, cut, modes, speeds, settings.max_depth)
-                                             : depth_limits(tool, material, cut, modes, speeds, settings);
+  const auto trace = [&](const LinearCut& linear, std::span<const Mode> turned) {
+    return traced_depth_limits(linear, turned, speeds, {.max_depth = settings.max_depth});
+  };
+  const std::vector<DepthLimit> limits = limits_by(trace, tool, material, cut, modes, speeds, settings);
   LobeDiagram diagram;
   diagram.point_count = settings.points;
   for (std::size_t i = 0; i < limits.size(); ++i) {

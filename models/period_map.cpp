@@ -7,7 +7,6 @@
 #include <string>
 
 #include "models/cutting_pieces.hpp"
-#include "models/modal_response.hpp"
 #include "models/multiversion.hpp"
 #include "models/receptance.hpp"
 
@@ -68,7 +67,7 @@ double highest_frequency(const LinearCut& cut, std::span<const Oscillator> modes
   return std::sqrt(highest * highest + stiffness * compliance);
 }
 
-// of_chip(row i, column j) += seen_i per_unit_ij force_j; of_chip is stored with the columns of a row side by side.
+// of_chip(row i, column j) += seen_i per_unit_ij force_j; row after row, `stride` apart.
 STILLCUT_MULTIVERSION void add_response(const double* seen, const double* per_unit, const double* force, int nodes,
                                         int rows, double* of_chip, std::ptrdiff_t stride) {
   for (int i = 0; i < nodes; ++i) {
@@ -87,7 +86,7 @@ void add_mode(StretchMap& map, const Oscillator& mode, const ModalResponse& resp
   const int n = map.nodes, rows = map.rows, positions = map.positions;
   const Eigen::VectorXd seen = map.observe.transpose() * mode.direction;
   const Eigen::VectorXd force = map.load.transpose() * mode.direction;
-  const std::ptrdiff_t stride = map.of_chip.rows();
+  const std::ptrdiff_t stride = map.of_chip.cols();
   const int kinds = damped ? 2 : 1;
   for (int observed = 0; observed < kinds; ++observed) {  // positions, then velocities
     const RowMatrix& free = observed == 0 ? response.free : response.free_rate;
@@ -181,9 +180,8 @@ PeriodMap period_map(const LinearCut& cut, std::span<const Mode> modes, double s
   const std::vector<Oscillator> oscillators(modes.begin(), modes.end());
   const double frequency = highest_frequency(cut, oscillators, std::max(depth, deepest));
   PeriodMap map;
-  map.period = cut.period_angle() / speed;
   map.states = 2 * static_cast<int>(modes.size());
-  if (map.period * frequency / kTwoPi > kMostCycles) {
+  if (cut.period_angle() / speed * frequency / kTwoPi > kMostCycles) {
     throw std::invalid_argument("spindle speed: so low that the highest mode vibrates over " +
                                 std::to_string(static_cast<int>(kMostCycles)) +
                                 " times in a period; raise the speed, or use method zoa");
@@ -195,7 +193,7 @@ PeriodMap period_map(const LinearCut& cut, std::span<const Mode> modes, double s
     stretch.free.reserve(oscillators.size());
     const Eigen::Index all = (damped ? 2 : 1) * stretch.positions;
     stretch.of_state.resize(all, map.states);
-    stretch.of_chip = Eigen::MatrixXd::Zero(all, all);
+    stretch.of_chip = RowMatrix::Zero(all, all);
     stretch.end_of_chip.resize(map.states, all);
   }
   ModalResponse response;

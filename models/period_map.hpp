@@ -12,6 +12,7 @@
 
 #include "models/dynamics_map.hpp"
 #include "models/linear_cut.hpp"
+#include "models/modal_response.hpp"
 
 namespace stillcut {
 
@@ -37,16 +38,15 @@ struct StretchMap {
   std::vector<int> tooth;             // of each of a node's rows: whose delay it has
   std::vector<Eigen::Matrix2d> free;  // of each mode: state at the end per state at the start
   Eigen::MatrixXd of_state;           // all rows x states
-  Eigen::MatrixXd of_chip;            // all rows x all rows, stored transposed: column i belongs to row i
+  RowMatrix of_chip;                  // all rows x all rows
   Eigen::MatrixXd end_of_chip;        // states x all rows: s' = free s - depth end_of_chip c
   Eigen::MatrixXd observe;            // 3 x positions: the direction of each displacement
   Eigen::MatrixXd load;               // 3 x all rows: force per chip and depth, N/m^2
 };
 
 struct PeriodMap {
-  double period = 0.0;  // s
-  int states = 0;       // two a mode
-  int positions = 0;    // of all stretches
+  int states = 0;     // two a mode
+  int positions = 0;  // of all stretches
   std::vector<StretchMap> stretches;
 };
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "models/modal_response.hpp"
 #include "models/multiversion.hpp"
 
 namespace stillcut {
@@ -83,15 +82,15 @@ void PeriodOperator::set(const PeriodMap& map, double depth) {
   chip_.resize(most);
   observed_.resize(most);
   state_.resize(static_cast<std::size_t>(map.states));
-  std::vector<int> exchanged(most);
+  exchanged_.resize(most);
   double* block = inverse_.data();
   for (const StretchMap& stretch : map.stretches) {
     const Eigen::Index rows = stretch.of_chip.rows();
     Eigen::Map<Eigen::MatrixXd> inverse(block, rows, rows);
-    // of_chip is stored transposed, so this is the inverse's transpose, row by row: its columns as multiply wants them.
-    inverse = depth * stretch.of_chip.transpose();
+    // Kept column by column, as multiply wants it; inverted row by row, which inverts the transpose: the same memory.
+    inverse = depth * stretch.of_chip;
     inverse.diagonal().array() += 1.0;
-    invert(block, static_cast<int>(rows), exchanged.data());
+    invert(block, static_cast<int>(rows), exchanged_.data());
     block += rows * rows;
   }
 }
@@ -136,7 +135,7 @@ SeveralDelaysOperator::SeveralDelaysOperator(const LinearCut& cut, std::span<con
     const Eigen::Index rows = stretch.of_chip.rows();
     part.begin = end, part.size = map.states + rows;
     end += part.size;
-    part.inverse = (Eigen::MatrixXd::Identity(rows, rows) + depth * stretch.of_chip.transpose()).inverse();
+    part.inverse = (Eigen::MatrixXd::Identity(rows, rows) + depth * stretch.of_chip).inverse();
   }
   size_ = static_cast<int>(end);
   for (std::size_t r = 0; r < map.stretches.size(); ++r) {

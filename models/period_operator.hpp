@@ -24,6 +24,7 @@ class PeriodOperator final : public LinearMap {
   const PeriodMap* map_ = nullptr;
   double depth_ = 0.0;
   std::vector<double> inverse_;  // of 1 + depth of_chip, stretch after stretch, column by column
+  std::vector<int> exchanged_;   // rows, while inverting
   mutable std::vector<double> chip_, observed_, state_;
 };
 

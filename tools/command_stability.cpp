@@ -31,6 +31,7 @@ struct StabilityOptions {
 };
 
 struct Judged {
+  Cell cell;
   PredictedPosture predicted;
   Cut cut;
   std::vector<CutPoint> points;
@@ -59,8 +60,8 @@ CutStability judge(const LinearCut& cut, std::span<const Mode> modes, const CutP
 }
 
 Judged compute(const StabilityOptions& options, bool with_verdicts) {
-  const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
-  Judged judged;
+  Judged judged{read_cell(options.cell, {.dbc = false, .bus = false}), {}, {}, {}, {}};
+  const Cell& cell = judged.cell;
   judged.cut = require(cell, cell.cut, "cut");
   if (options.feed_direction_deg) judged.cut.feed_direction = deg_to_rad(*options.feed_direction_deg);
   judged.predicted = predicted_posture(cell, read_cell_dynamics(cell), options.posture);
@@ -151,9 +152,8 @@ void draw(const Judged& judged, const StabilityOptions& options) {
   question.speeds =
       equally_spaced_speeds(rpm_to_rad_s(slowest * (1.0 - kAround)), rpm_to_rad_s(fastest * (1.0 + kAround)), kSpeeds);
   question.settings.max_depth = deepest > 0.0 ? kAbove * deepest : kShallowest;
-  const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   Progress progress("lobes");
-  const LobeStudy study = study_lobes(cell, question, [&](double share) { progress.update(share); });
+  const LobeStudy study = study_lobes(judged.cell, question, [&](double share) { progress.update(share); });
   plot::write_figure(lobe_figure(study, cuts, kPredictedCuts), options.plot);
 }
 

@@ -16,23 +16,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-struct RobotCell {
-  Tool tool;
-  Material material;
-  Cut cut;
+struct RobotCell : test::RobotCell {
   std::vector<Mode> modes = test::robot_modes();
-  std::vector<double> speeds = equally_spaced_speeds(rpm_to_rad_s(2800), rpm_to_rad_s(3800), 7);
+  std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, 7);
   // The zeroth order is fast and, like every linear theory, knows depth only as depth times force coefficient.
   LobeSettings settings{.method = LobeMethod::zeroth_order, .max_depth = 1.0};
 
-  RobotCell() {
-    tool.teeth = 2;
-    tool.diameter = 0.025;
-    material.ktc = 8e8;
-    material.krc = 3e8;
-    cut.milling = Milling::down;
-    cut.radial_depth = 0.0125;
-  }
   std::vector<DepthLimit> nominal() const { return depth_limits(tool, material, cut, modes, speeds, settings); }
   std::vector<DepthBand> bands(const Tolerance& tolerance, const Confidence& confidence) const {
     return depth_bands(tool, material, cut, modes, speeds, settings, tolerance, confidence);

@@ -48,11 +48,7 @@ TEST(Arnoldi, FindsTheLeadingMultiplierOfCutsAndItsVector) {
     const PeriodMap map = period_map(cutting.cut, cutting.modes, speed, depth, depth, {7.0, 4.0, 1.5});
     PeriodOperator march;
     march.set(map, depth);
-    Eigen::MatrixXd matrix(march.size(), march.size());
-    for (int k = 0; k < march.size(); ++k) {
-      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(march.size(), k);
-      march.apply(unit.data(), matrix.col(k).data());
-    }
+    const Eigen::MatrixXd matrix = test::written_out(march);
     const double expected = matrix.eigenvalues().cwiseAbs().maxCoeff();
     const int least = 2 * static_cast<int>(cutting.modes.size()) + 4;
     const auto leading = arnoldi.leading(march, least, 1e-7);

@@ -35,21 +35,27 @@ TEST(Immersion, RefusesWhatNoToolReaches) {
   EXPECT_THROW(immersion(Milling::unknown, 0.001, 0.02), std::invalid_argument);
 }
 
-TEST(LinearCut, RefusesWhatIsNoTool) {
+struct Slot {
   Tool tool;
-  tool.teeth = 2;
-  tool.diameter = 0.02;
-  tool.pitch = {kPi, kPi};
   Material material;
-  material.ktc = 8e8;
   Cut cut;
-  cut.milling = Milling::slot;
-  EXPECT_NO_THROW(linear_cut(tool, material, cut));
-  const auto refused = [&](const std::function<void(Tool&, Material&)>& change) {
-    Tool other_tool = tool;
-    Material other_material = material;
-    change(other_tool, other_material);
-    EXPECT_THROW(linear_cut(other_tool, other_material, cut), std::invalid_argument);
+
+  Slot() {
+    tool.teeth = 2;
+    tool.diameter = 0.02;
+    tool.pitch = {kPi, kPi};
+    material.ktc = 8e8;
+    cut.milling = Milling::slot;
+  }
+};
+
+TEST(LinearCut, RefusesWhatIsNoTool) {
+  const Slot slot;
+  EXPECT_NO_THROW(linear_cut(slot.tool, slot.material, slot.cut));
+  const auto refused = [](const std::function<void(Tool&, Material&)>& change) {
+    Slot other;
+    change(other.tool, other.material);
+    EXPECT_THROW(linear_cut(other.tool, other.material, other.cut), std::invalid_argument);
   };
   refused([](Tool& t, Material&) { t.pitch = {kPi - 0.1, kPi + 0.2}; });
   refused([](Tool& t, Material&) { t.pitch = {-0.1, kTwoPi + 0.1}; });
@@ -61,14 +67,7 @@ TEST(LinearCut, RefusesWhatIsNoTool) {
 }
 
 TEST(LinearCut, KeepsThePitchOnlyWhereItVaries) {
-  Tool tool;
-  tool.teeth = 2;
-  tool.diameter = 0.02;
-  tool.pitch = {kPi, kPi};
-  Material material;
-  material.ktc = 8e8;
-  Cut cut;
-  cut.milling = Milling::slot;
+  auto [tool, material, cut] = Slot();
   EXPECT_DOUBLE_EQ(linear_cut(tool, material, cut).period_angle(), kPi);
   tool.pitch = {kPi - 0.1, kPi + 0.1};
   EXPECT_DOUBLE_EQ(linear_cut(tool, material, cut).period_angle(), kTwoPi);

@@ -14,21 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-struct RobotCell {
-  Tool tool;
-  Material material;
-  Cut cut;
-  SpindleLimits spindle{rpm_to_rad_s(2800), rpm_to_rad_s(3800), 200, 2000};
-
-  RobotCell() {
-    tool.teeth = 2;
-    tool.diameter = 0.025;
-    material.ktc = 8e8;
-    material.krc = 3e8;
-    cut.milling = Milling::down;
-    cut.radial_depth = 0.0125;
-  }
-};
+using test::RobotCell;
 
 LobeDiagram four_points() {
   LobeDiagram diagram;

@@ -11,17 +11,12 @@
 namespace stillcut {
 namespace {
 
-// The operator written out, column by column, and its eigenvalues found by another method.
+// The operator written out, and its eigenvalues found by another method.
 double radius(const test::StabilityCase& cutting, double speed, double depth, const Collocation& collocation) {
   const PeriodMap map = period_map(cutting.cut, cutting.modes, speed, depth, depth, collocation);
   PeriodOperator march;
   march.set(map, depth);
-  Eigen::MatrixXd matrix(march.size(), march.size());
-  for (int i = 0; i < march.size(); ++i) {
-    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(march.size(), i);
-    march.apply(unit.data(), matrix.col(i).data());
-  }
-  return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
+  return Eigen::EigenSolver<Eigen::MatrixXd>(test::written_out(march), false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 TEST(PeriodMap, OrdersConvergeOnRandomCuts) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "models/leading_multiplier.hpp"
 #include "models/linear_cut.hpp"
 #include "models/machining.hpp"
 #include "models/receptance.hpp"
@@ -24,6 +25,33 @@ inline std::vector<std::vector<std::string>> read_table(const std::string& name)
     for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
   }
   return rows;
+}
+
+// A robot's cut as a cell describes it: two teeth, half immersion down-milling, 2800-3800 rpm, and its modes.
+struct RobotCell {
+  Tool tool;
+  Material material;
+  Cut cut;
+  SpindleLimits spindle{rpm_to_rad_s(2800), rpm_to_rad_s(3800), 200, 2000};
+
+  RobotCell() {
+    tool.teeth = 2;
+    tool.diameter = 0.025;
+    material.ktc = 8e8;
+    material.krc = 3e8;
+    cut.milling = Milling::down;
+    cut.radial_depth = 0.0125;
+  }
+};
+
+// The period operator of a cut written out as a matrix, column by column.
+inline Eigen::MatrixXd written_out(const LinearMap& map) {
+  Eigen::MatrixXd matrix(map.size(), map.size());
+  for (int i = 0; i < map.size(); ++i) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(map.size(), i);
+    map.apply(unit.data(), matrix.col(i).data());
+  }
+  return matrix;
 }
 
 struct StabilityCase {
