@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestStep_hz = 5.0;  // from hop to hop of a chatter line
 constexpr double kOutOfSight_s = 0.06;
 constexpr double kBlindToEnd_s = 0.5;        // chatter out of sight for this long is over as far as can be told

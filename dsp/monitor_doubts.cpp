@@ -2,15 +2,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 
 #include "dsp/monitor.hpp"
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kSpeedSilence_ns = 300'000'000;  // drives send their speed at 10 Hz or more
 constexpr std::int64_t kSensorSilence_ns = 100'000'000;
 constexpr std::int64_t kSensorStart_ns = 500'000'000;

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "dsp/monitor.hpp"
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kHopsFree = 3, kHopsOnOrder = 4;  // a suspect must be the same for so many hops
 constexpr double kSteadyCycles = 0.12;          // and keep its phase against the revolution before
 constexpr double kFrequencyDoubt_hz = 3.0;      // closer to an order a line is on it, as far as can be told

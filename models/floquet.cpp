@@ -4,19 +4,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "dsp/numbers.hpp"
 #include "models/depth_scan.hpp"
 
 namespace stillcut {
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 Collocation resolution(int level) {
   constexpr std::array<Collocation, kFinestLevel + 1> kLevels{

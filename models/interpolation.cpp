@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <tuple>
 
+#include "dsp/numbers.hpp"
 #include "models/receptance.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double cosine(const Mode& a, const Mode& b) {
   double sum = 0.0;

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
+#include "dsp/numbers.hpp"
 #include "models/depth_scan.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBeyond = 1.5;  // limits are followed up to this times the largest depth
 constexpr double kLookTolerance = 1e-5;
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "dsp/numbers.hpp"
 #include "models/floquet.hpp"
 #include "models/linear_cut.hpp"
 #include "models/lobe_trace.hpp"
@@ -14,8 +14,6 @@
 
 namespace stillcut {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // How the Floquet limits at the given speeds are found.
 using FloquetLimits = std::function<std::vector<DepthLimit>(const LinearCut&, std::span<const Mode> feed_frame_modes)>;

@@ -1,22 +1,21 @@
 #include "models/mode_coupling.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "dsp/numbers.hpp"
+#include "models/eigenvalues.hpp"
 #include "models/receptance.hpp"
 
 namespace stillcut {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::Vector3d unit_direction(const Mode& mode) { return Eigen::Vector3d(mode.direction.data()).normalized(); }
 
@@ -77,7 +76,7 @@ Eigen::MatrixXd modal_coupling(const LinearCut& cut, std::span<const Mode> modes
 
 // Frequencies at which the response is looked at: dense where a mode resonates, up to where the cut's stiffness can
 // carry a frequency.
-std::vector<double> frequency_grid(std::span<const Mode> modes, double highest_added) {
+std::vector<double> coupling_frequencies(std::span<const Mode> modes, double highest_added) {
   constexpr double kRatio = 1.005, kSteps = 0.1, kReach = 7.0;
   double lowest = kInfinity, highest = 0.0;
   std::vector<double> grid;
@@ -151,7 +150,7 @@ ModeCouplingLimit mode_coupling_limit(const LinearCut& cut, std::span<const Mode
   std::array<Complex, 2> before = response.eigenvalues(0.0, {});
   for (const Complex& eigenvalue : before) consider(0.0, eigenvalue);
   double last = 0.0;
-  for (const double frequency : frequency_grid(modes, max_depth * modal_coupling(cut, modes).norm())) {
+  for (const double frequency : coupling_frequencies(modes, max_depth * modal_coupling(cut, modes).norm())) {
     const auto now = response.eigenvalues(frequency, before);
     for (std::size_t branch = 0; branch < now.size(); ++branch) {
       if (before.at(branch).imag() * now.at(branch).imag() >= 0.0) continue;
@@ -175,7 +174,7 @@ ModeCouplingLimit undamped_mode_coupling_limit(const LinearCut& cut, std::span<c
   const auto frequency_at = [&](double depth) {
     Eigen::MatrixXd matrix = depth * coupling;
     matrix.diagonal() += squares;
-    return coupled_frequency(Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues(), highest_frequency);
+    return coupled_frequency(eigenvalues(matrix), highest_frequency);
   };
   double low = 0.0, high = kFirst * max_depth;
   double frequency = frequency_at(high);

@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "dsp/numbers.hpp"
 #include "models/receptance.hpp"
 
 namespace stillcut {
@@ -43,7 +43,7 @@ std::vector<double> frequency_grid(std::span<const Mode> modes, double longest_p
   return grid;
 }
 
-double wrapped(double angle) { return std::remainder(angle, kTwoPi); }
+double wrapped_phase(double angle) { return std::remainder(angle, kTwoPi); }
 
 struct Sample {
   double frequency;
@@ -57,7 +57,7 @@ struct Crossing {
 };
 Crossing refine(const LinearCut& cut, std::span<const Mode> modes, double period, int which, Sample low, Sample high) {
   const auto index = static_cast<std::size_t>(which);
-  double gap_low = wrapped(low.frequency * period - lobe_branch(cut, low.eigenvalues[index]).phase);
+  double gap_low = wrapped_phase(low.frequency * period - lobe_branch(cut, low.eigenvalues[index]).phase);
   Crossing crossing{low.frequency, lobe_branch(cut, low.eigenvalues[index])};
   for (int step = 0; step < 30; ++step) {
     Sample middle{0.5 * (low.frequency + high.frequency), {}};
@@ -65,7 +65,7 @@ Crossing refine(const LinearCut& cut, std::span<const Mode> modes, double period
                        0.5 * (low.eigenvalues[1] + high.eigenvalues[1])};
     middle.eigenvalues = continued(oriented_eigenvalues(cut, modes, middle.frequency), halfway);
     crossing = {middle.frequency, lobe_branch(cut, middle.eigenvalues[index])};
-    const double gap = wrapped(middle.frequency * period - crossing.branch.phase);
+    const double gap = wrapped_phase(middle.frequency * period - crossing.branch.phase);
     if (gap == 0.0) break;
     if ((gap < 0.0) == (gap_low < 0.0)) {
       low = middle, gap_low = gap;
@@ -116,19 +116,18 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
     branches.push_back({lobe_branch(cut, sample.eigenvalues[0]), lobe_branch(cut, sample.eigenvalues[1])});
   }
 
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<DepthLimit> limits;
   for (const double speed : speeds) {
     const double period = kTwoPi / (speed * cut.teeth);
-    DepthLimit limit{kInfinity, std::numeric_limits<double>::quiet_NaN(), Instability::hopf, 0.0};
+    DepthLimit limit{kInfinity, kNaN, Instability::hopf, 0.0};
     for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
       for (std::size_t which = 0; which < 2; ++which) {
         const LobeBranch &a = branches[i][which], &b = branches[i + 1][which];
         if (!(a.depth > 0.0 || b.depth > 0.0) || std::min(a.depth, b.depth) > 2.0 * std::min(limit.depth, max_depth)) {
           continue;
         }
-        const double gap_a = wrapped(samples[i].frequency * period - a.phase);
-        const double gap_b = wrapped(samples[i + 1].frequency * period - b.phase);
+        const double gap_a = wrapped_phase(samples[i].frequency * period - a.phase);
+        const double gap_b = wrapped_phase(samples[i + 1].frequency * period - b.phase);
         if ((gap_a < 0.0) == (gap_b < 0.0) || std::abs(gap_a - gap_b) > std::numbers::pi) continue;
         const Crossing crossing = refine(cut, modes, period, static_cast<int>(which), samples[i], samples[i + 1]);
         if (crossing.branch.depth > 0.0 && crossing.branch.depth < limit.depth) {
@@ -137,7 +136,7 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
         }
       }
     }
-    if (limit.depth > max_depth) limit = {kInfinity, std::numeric_limits<double>::quiet_NaN(), Instability::hopf, 0.0};
+    if (limit.depth > max_depth) limit = {kInfinity, kNaN, Instability::hopf, 0.0};
     limits.push_back(limit);
   }
   return limits;

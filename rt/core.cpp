@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
+#include "dsp/numbers.hpp"
 #include "models/lobes.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kStatusEvery_ns = 100'000'000;
 constexpr std::int64_t kLongestTold_ns = 5'000'000'000;  // of a silence; longer ones are told by their last seconds
 constexpr double kPriorStep = 0.1;                       // of margin, worth telling the monitor

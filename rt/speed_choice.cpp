@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "dsp/numbers.hpp"
 #include "models/lobes.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFrequencyError = 0.01;  // of f_c and of the spindle's speed: the pocket must be that wide
 constexpr double kAlreadyThere = 0.005;   // a target this near is no move
 constexpr double kSameTarget = 0.01;      // of one already tried

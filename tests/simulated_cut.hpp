@@ -14,6 +14,8 @@
 
 namespace stillcut {
 
+inline Cell demo_cell() { return read_cell(EXAMPLES "/demo-cell/cell.toml", {.bus = false}); }
+
 inline std::vector<CanFrame> simulate_cut(const Cell& cell, const Schedule& axial_depth, double duration_s,
                                           std::uint64_t seed = 1) {
   MillingSetup setup;

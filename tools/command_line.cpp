@@ -3,6 +3,7 @@
 
 #include "drivers/files/input_error.hpp"
 #include "tools/commands.hpp"
+#include "tools/programs.hpp"
 
 namespace stillcut {
 
@@ -25,6 +26,17 @@ int run_command_line(CLI::App& app, int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(error, 1);
   }
+}
+
+int run_stillcut(int argc, char** argv) {
+  CLI::App app{"Stillcut: chatter monitor and compensator for robots that mill", "stillcut"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", STILLCUT_VERSION);
+  add_lobes_command(app);
+  add_replay_command(app);
+  add_simulate_command(app);
+  add_stability_command(app);
+  return run_command_line(app, argc, argv);
 }
 
 }  // namespace stillcut

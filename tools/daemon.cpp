@@ -33,11 +33,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPollOutputs{2}, kPollRecord{20}, kPollModel{5};
 
-std::int64_t realtime_ns() {
-  using namespace std::chrono;
-  return duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
-}
-
 // Where the bus name ends in a log, it is played in real time: a daemon lives in real time.
 std::string live_bus(const std::string& bus) {
   const bool is_log = bus.starts_with("log:");

@@ -13,13 +13,13 @@ constexpr std::int64_t kClockStep_ns = 1'000'000'000;  // no frame is held up th
 // Frames a tick takes at most, so that a flood delays one tick and not the thread for good.
 constexpr int kBatchesATick = 32;
 
+}  // namespace
+
 std::int64_t realtime_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
-
-}  // namespace
 
 bool LiveLoop::tick() noexcept {
   const std::int64_t before_ns = realtime_ns();

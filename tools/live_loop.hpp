@@ -20,6 +20,8 @@
 
 namespace stillcut {
 
+std::int64_t realtime_ns() noexcept;  // this host's CLOCK_REALTIME
+
 struct LoopChannels {
   Snapshot<LobeDiagram> lobes;
   Ring<RobotMessage> messages{256};

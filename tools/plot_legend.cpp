@@ -8,7 +8,7 @@
 namespace stillcut::plot {
 namespace {
 
-constexpr double kSample = 28.0, kBetween = 16.0, kRowHeight = 18.0;
+constexpr double kSample = 28.0, kApart = 16.0, kRowHeight = 18.0;
 
 struct Entry {
   const std::string* label;
@@ -45,7 +45,7 @@ std::vector<Entry> entries_of(Canvas& canvas, const Panel& panel) {
 // Places the entries from the last to the first, right to left, and in a further row where the line is full.
 std::vector<Entry> placed_entries(Canvas& canvas, Box box, const Panel& panel) {
   std::vector<Entry> entries = entries_of(canvas, panel);
-  double x = box.right, left = box.left + canvas.text_width(panel.title, kPanelText, true) + kBetween;
+  double x = box.right, left = box.left + canvas.text_width(panel.title, kPanelText, true) + kApart;
   int row = 0;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
     const double width = canvas.text_width(*entry->label, kSmallText);
@@ -55,7 +55,7 @@ std::vector<Entry> placed_entries(Canvas& canvas, Box box, const Panel& panel) {
     }
     entry->x = x - width;
     entry->row = row;
-    x = entry->x - kSample - kBetween;
+    x = entry->x - kSample - kApart;
   }
   return entries;
 }

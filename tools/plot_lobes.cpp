@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
 #include "drivers/files/csv.hpp"
+#include "dsp/numbers.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<plot::Color, kMostLobeCurves> kColors{plot::kBlue,   plot::kVermilion, plot::kGreen, plot::kPurple,
                                                            plot::kOrange, plot::kSkyBlue,   plot::kInk,   plot::kGrey};
 

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "dsp/numbers.hpp"
 #include "tools/spectrogram.hpp"
 
 namespace stillcut {
 namespace {
 
 using plot::Band, plot::EventMark, plot::Figure, plot::Line, plot::Panel, plot::Scatter;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // printf for a few numbers into a string.
 template <class... Numbers>

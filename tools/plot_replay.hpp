@@ -3,10 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "dsp/numbers.hpp"
 #include "dsp/signals.hpp"
 #include "tools/plot.hpp"
 
@@ -17,7 +17,7 @@ struct TracePoint {
   double indicator = 0.0;  // 1 is the alarm limit; NaN: cannot tell
   double spindle_speed_rpm = 0.0;
   State state = State::idle;
-  double chatter_frequency_hz = std::numeric_limits<double>::quiet_NaN();  // NaN: no chatter just now
+  double chatter_frequency_hz = kNaN;  // NaN: no chatter just now
 };
 
 struct ReplayEvent {

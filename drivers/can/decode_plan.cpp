@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "drivers/can/signal_reference.hpp"
 #include "drivers/files/input_error.hpp"
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
@@ -18,7 +18,6 @@ constexpr std::array<const char*, kMaxAxes> kAxisNames = {"x", "y", "z"};
 
 // The ends of the range that raw values of this width have, then narrowed by the DBC's [min|max].
 void set_range(SignalPlan& plan, const DbcSignal& signal) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   plan.low = -kInfinity;
   plan.high = kInfinity;
   if (plan.type == ValueType::unsigned_integer || plan.type == ValueType::signed_integer) {

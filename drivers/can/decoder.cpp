@@ -7,12 +7,13 @@
 #include <limits>
 #include <numbers>
 
+#include "dsp/numbers.hpp"
+
 namespace stillcut {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "regular axes are loaded as they lie in the frame");
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBeyondReason = 1e30;  // m/s^2; a floating-point sample may hold anything, also what no float can
 
 // Physical value; NaN for a floating-point signal that is not finite.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLengthTolerance = 0.05;  // of a unit direction
 constexpr double kLengthIsExact = 1e-12;   // nearer to 1 than this it is kept bit for bit
-constexpr double kMilli = 1e-3;            // mm -> m
+constexpr double kMm = 1e-3;               // m
 
 const std::vector<std::string> kJointColumns{"j1_deg", "j2_deg", "j3_deg", "j4_deg", "j5_deg", "j6_deg"};
 const std::vector<std::string> kPositionColumns{"x_mm", "y_mm", "z_mm"};
@@ -65,7 +65,7 @@ DynamicsMap read_postures(const CsvTable& table, std::vector<const CsvRow*>& row
     if (map.has_joints) {
       posture.joints = read_numbers(table, row, joint_columns, 3600, [](double deg) { return deg_to_rad(deg); });
     }
-    posture.position = read_numbers(table, row, position_columns, 1e6, [](double mm) { return mm * kMilli; });
+    posture.position = read_numbers(table, row, position_columns, 1e6, [](double mm) { return mm * kMm; });
     for (const Posture& other : map.postures) {
       if (other.id == posture.id) table.fail(row, id_column, posture.id + " stands twice; give each its own id");
       if (same_place(map, other, posture)) {
@@ -173,7 +173,7 @@ void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& 
     if (map.has_joints) {
       for (const double joint : posture.joints) row.push_back(csv_number(rad_to_deg(joint)));
     }
-    for (const double coordinate : posture.position) row.push_back(csv_number(coordinate / kMilli));
+    for (const double coordinate : posture.position) row.push_back(csv_number(coordinate / kMm));
     write_csv_row(postures, row);
     for (std::size_t i = 0; i < posture.modes.size(); ++i) {
       const Mode& mode = posture.modes[i];

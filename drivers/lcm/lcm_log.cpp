@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "drivers/files/input_error.hpp"
 
@@ -12,7 +11,6 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::int64_t kHeaderBytes = 28;
 constexpr std::int64_t kLongestChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / 1000;
 
 std::int64_t big_endian(std::span<const std::uint8_t> bytes) {
   std::uint64_t value = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stillcut/correction_ack_t.hpp>
 #include <stillcut/correction_t.hpp>
 #include <stillcut/event_t.hpp>
@@ -15,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
 constexpr std::int64_t kUsPerMs = 1000;
-constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / kNsPerUs;
 
 // Beyond these no machine moves: such a message is a fault of the sender.
 constexpr double kMaxJointRad = 1e3, kMaxPositionM = 1e3, kMaxAngleRad = 1e3, kMaxFeedMPerS = 100, kMaxSpeedRpm = 1e6,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ namespace stillcut {
 inline constexpr const char *kRobotStateChannel = "ROBOT_STATE", *kRobotAckChannel = "ROBOT_ACK",
                             *kCorrectionChannel = "STILLCUT_CORRECTION", *kEventChannel = "STILLCUT_EVENT",
                             *kStatusChannel = "STILLCUT_STATUS";
+
+// The last microsecond, counted from 1970, that fits in nanoseconds.
+inline constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / 1000;
 
 using MessageBytes = std::vector<std::uint8_t>;
 

@@ -52,7 +52,7 @@ void print_row(const char* stage, double seconds, double whole) {
 }  // namespace
 
 int main() {
-  const Cell cell = read_cell(EXAMPLES "/demo-cell/cell.toml", {.bus = false});
+  const Cell cell = demo_cell();
   const auto file = std::filesystem::temp_directory_path() / "stillcut-playback-bench.log";
   write_cut(cell, file);
 

@@ -11,7 +11,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kRevolution = 2.0 * std::numbers::pi;  // rad
 
 // Amplitude ratio, after over before, of a tone of `orders` per revolution once the filter has settled.
 double gain_at(double orders, double samples_per_revolution, int settle_revolutions = 200) {
@@ -22,7 +22,7 @@ double gain_at(double orders, double samples_per_revolution, int settle_revoluti
   const auto measure = static_cast<long>(64 * samples_per_revolution);
   for (long n = 0; n < settle + measure; ++n) {
     const double turned = static_cast<double>(n) / samples_per_revolution;
-    const std::array<float, 1> x = {static_cast<float>(std::sin(kTwoPi * orders * turned + 0.3))};
+    const std::array<float, 1> x = {static_cast<float>(std::sin(kRevolution * orders * turned + 0.3))};
     std::array<float, 1> residual{};
     filter.process(turned - std::floor(turned), x, residual);
     if (n < settle) continue;
@@ -56,7 +56,7 @@ TEST(SynchronousFilter, PassesLinesBetweenTheOrdersWithinADecibel) {
 double forced(double turned) {
   double x = 1.0;
   for (int order = 1; order <= 20; ++order)
-    x += (order % 2 == 0 ? 10.0 : 3.0) / order * std::cos(kTwoPi * order * turned + order);
+    x += (order % 2 == 0 ? 10.0 : 3.0) / order * std::cos(kRevolution * order * turned + order);
   return x;
 }
 
@@ -121,7 +121,7 @@ TEST(SynchronousFilter, DoesNotRepeatAKnock) {
   for (int n = 0; n < 256 * 62; ++n) {
     const double since = (n - 256 * 60) / 256.0;  // revolutions since a knock of 200 times the noise
     double x = forced((n % 256) / 256.0) + normal(random);
-    if (since >= 0.0) x += 60.0 * std::exp(-8.0 * since) * std::sin(kTwoPi * 5.3 * since);
+    if (since >= 0.0) x += 60.0 * std::exp(-8.0 * since) * std::sin(kRevolution * 5.3 * since);
     std::array<float, 1> residual{};
     filter.process((n % 256) / 256.0, std::array{static_cast<float>(x)}, residual);
     if (since >= -2.0 && since < 0.0) quiet += residual[0] * residual[0];

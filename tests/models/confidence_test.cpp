@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
+#include "dsp/numbers.hpp"
 #include "stability_cases.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-struct RobotCell : test::RobotCell {
+struct BandCell : test::RobotCell {
   std::vector<Mode> modes = test::robot_modes();
   std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, 7);
   // The zeroth order is fast and, like every linear theory, knows depth only as depth times force coefficient.
@@ -39,7 +36,7 @@ constexpr NormalPoint kNormal[] = {
 
 TEST(Confidence, UncertainMaterialAloneFollowsTheClosedForm) {
   // The limit is inversely proportional to the coefficients, so it is lognormal: a exp(-+ sigma z).
-  const RobotCell cell;
+  const BandCell cell;
   const auto nominal = cell.nominal();
   for (const double deviation : {0.02, 0.3}) {
     Tolerance tolerance = kExact;
@@ -56,7 +53,7 @@ TEST(Confidence, UncertainMaterialAloneFollowsTheClosedForm) {
 }
 
 TEST(Confidence, TheFloquetSolutionHasTheSameBand) {
-  RobotCell cell;
+  BandCell cell;
   cell.speeds = {rpm_to_rad_s(3200)};
   cell.settings = {.method = LobeMethod::floquet, .max_depth = 0.02};
   Tolerance tolerance = kExact;
@@ -67,7 +64,7 @@ TEST(Confidence, TheFloquetSolutionHasTheSameBand) {
 }
 
 TEST(Confidence, BandShrinksToTheLimitAsEverythingGetsKnown) {
-  const RobotCell cell;
+  const BandCell cell;
   const auto nominal = cell.nominal();
   std::vector<double> widths;
   for (const double scale : {1.0, 0.1, 0.01, 0.0}) {
@@ -90,7 +87,7 @@ TEST(Confidence, BandShrinksToTheLimitAsEverythingGetsKnown) {
 }
 
 TEST(Confidence, MoreConfidenceAsksForLessDepth) {
-  const RobotCell cell;
+  const BandCell cell;
   std::vector<DepthBand> last;
   for (const double probability : {0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}) {
     const auto bands = cell.bands({}, {.probability = probability, .samples = 60});
@@ -105,7 +102,7 @@ TEST(Confidence, MoreConfidenceAsksForLessDepth) {
 }
 
 TEST(Confidence, EachFigureHasItsDeviationAndItsMedian) {
-  const RobotCell cell;
+  const BandCell cell;
   const Tolerance tolerance{{0.03, 0.2, 0.1}, 0.15};
   const auto cells = sample_cells(cell.material, cell.modes, tolerance, 2000, 7);
   ASSERT_EQ(cells.size(), 2000u);
@@ -135,7 +132,7 @@ TEST(Confidence, EachFigureHasItsDeviationAndItsMedian) {
 }
 
 TEST(Confidence, TheSameQuestionHasTheSameAnswer) {
-  const RobotCell cell;
+  const BandCell cell;
   const auto first = cell.bands({}, {.samples = 40}), second = cell.bands({}, {.samples = 40});
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].low, second[i].low);
@@ -154,7 +151,7 @@ TEST(DepthQuantile, HoldsForSpeedsWithoutALimit) {
 }
 
 TEST(Confidence, RefusesWhatItCannotAnswer) {
-  const RobotCell cell;
+  const BandCell cell;
   EXPECT_THROW(cell.bands({}, {.probability = 0.4}), std::invalid_argument);
   EXPECT_THROW(cell.bands({}, {.probability = 0.999}), std::invalid_argument);
   EXPECT_THROW(cell.bands({}, {.probability = 0.95, .samples = 5}), std::invalid_argument);

@@ -13,18 +13,18 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Immersion, FollowsTheMillingKind) {
   const Immersion up = immersion(Milling::up, 0.005, 0.02), down = immersion(Milling::down, 0.005, 0.02);
   EXPECT_NEAR(up.entry, 0.0, 1e-15);
-  EXPECT_NEAR(up.exit, kPi / 3, 1e-12);
-  EXPECT_NEAR(down.entry, 2 * kPi / 3, 1e-12);
-  EXPECT_NEAR(down.exit, kPi, 1e-15);
+  EXPECT_NEAR(up.exit, pi / 3, 1e-12);
+  EXPECT_NEAR(down.entry, 2 * pi / 3, 1e-12);
+  EXPECT_NEAR(down.exit, pi, 1e-15);
   const Immersion slot = immersion(Milling::slot, 0.001, 0.02), full = immersion(Milling::up, 0.02, 0.02);
   EXPECT_EQ(slot.entry, 0.0);
-  EXPECT_EQ(slot.exit, kPi);
-  EXPECT_NEAR(full.exit, kPi, 1e-12);
+  EXPECT_EQ(slot.exit, pi);
+  EXPECT_NEAR(full.exit, pi, 1e-12);
 }
 
 TEST(Immersion, RefusesWhatNoToolReaches) {
@@ -43,7 +43,7 @@ struct Slot {
   Slot() {
     tool.teeth = 2;
     tool.diameter = 0.02;
-    tool.pitch = {kPi, kPi};
+    tool.pitch = {pi, pi};
     material.ktc = 8e8;
     cut.milling = Milling::slot;
   }
@@ -57,19 +57,19 @@ TEST(LinearCut, RefusesWhatIsNoTool) {
     change(other.tool, other.material);
     EXPECT_THROW(linear_cut(other.tool, other.material, other.cut), std::invalid_argument);
   };
-  refused([](Tool& t, Material&) { t.pitch = {kPi - 0.1, kPi + 0.2}; });
+  refused([](Tool& t, Material&) { t.pitch = {pi - 0.1, pi + 0.2}; });
   refused([](Tool& t, Material&) { t.pitch = {-0.1, kTwoPi + 0.1}; });
   refused([](Tool& t, Material&) { t.pitch = {kTwoPi}; });
   refused([](Tool& t, Material&) { t.teeth = 0; });
-  refused([](Tool& t, Material&) { t.helix = kPi / 2; });
+  refused([](Tool& t, Material&) { t.helix = pi / 2; });
   refused([](Tool&, Material& m) { m.ktc = 0.0; });
   refused([](Tool&, Material& m) { m.process_damping = -1.0; });
 }
 
 TEST(LinearCut, KeepsThePitchOnlyWhereItVaries) {
   auto [tool, material, cut] = Slot();
-  EXPECT_DOUBLE_EQ(linear_cut(tool, material, cut).period_angle(), kPi);
-  tool.pitch = {kPi - 0.1, kPi + 0.1};
+  EXPECT_DOUBLE_EQ(linear_cut(tool, material, cut).period_angle(), pi);
+  tool.pitch = {pi - 0.1, pi + 0.1};
   EXPECT_DOUBLE_EQ(linear_cut(tool, material, cut).period_angle(), kTwoPi);
 }
 

@@ -11,7 +11,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Mode mode_of(double frequency_hz, double damping_ratio, double stiffness, std::array<double, 3> direction) {
   return {kTwoPi * frequency_hz, damping_ratio, stiffness, direction};
@@ -56,8 +56,8 @@ Eigen::Vector3d mean_force(const MillingSetup& setup, double rate_hz, double sec
 // Mean forces of a slot per revolution, Altintas' closed form with the signs of docs/conventions.md.
 Eigen::Vector3d slot_mean_force(const Material& m, int teeth, double depth, double feed) {
   const double n = teeth;
-  return {-n * depth * (m.krc * feed / 4 + m.kre / kPi), n * depth * (m.ktc * feed / 4 + m.kte / kPi),
-          -n * depth * (m.kac * feed / kPi + m.kae / 2)};
+  return {-n * depth * (m.krc * feed / 4 + m.kre / pi), n * depth * (m.ktc * feed / 4 + m.kte / pi),
+          -n * depth * (m.kac * feed / pi + m.kae / 2)};
 }
 
 TEST(MillingSimulation, MeanSlottingForceIsTheClosedForm) {

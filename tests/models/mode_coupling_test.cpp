@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <stdexcept>
 
+#include "models/eigenvalues.hpp"
 #include "stability_cases.hpp"
 
 namespace stillcut {
@@ -75,7 +76,7 @@ class MeanCut {
   }
 
   std::complex<double> rightmost(double depth) const {
-    const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(state_matrix(depth), false).eigenvalues();
+    const Eigen::VectorXcd values = eigenvalues(state_matrix(depth));
     Eigen::Index index;
     values.real().maxCoeff(&index);
     return values[index];
@@ -162,7 +163,7 @@ TEST(ModeCoupling, TwoEqualModesAtAnAngleFollowTheClosedForm) {
       directions << std::cos(0.2), std::cos(0.2 + deg_to_rad(angle_deg)), std::sin(0.2),
           std::sin(0.2 + deg_to_rad(angle_deg));
       const Eigen::Matrix2d coupling = directions.transpose() * mean * directions / kStiffness;
-      const std::complex<double> m = Eigen::EigenSolver<Eigen::Matrix2d>(coupling, false).eigenvalues()[0];
+      const std::complex<double> m = eigenvalues(coupling)[0];
       ASSERT_GT(std::abs(m.imag()), 0.0);
       const double b = 4.0 * damping * damping, square = m.imag() * m.imag();
       const double depth = (b * m.real() + std::sqrt(b * b * m.real() * m.real() + 4.0 * square * b)) / (2.0 * square);
@@ -225,8 +226,7 @@ TEST(ModeCoupling, LooksNoHigherThanAsked) {
     if (std::isinf(low.depth)) continue;
     ++slow;
     EXPECT_LE(low.frequency, kBelow);
-    const Eigen::VectorXcd values =
-        Eigen::EigenSolver<Eigen::MatrixXd>(MeanCut(robot).state_matrix(low.depth), false).eigenvalues();
+    const Eigen::VectorXcd values = eigenvalues(MeanCut(robot).state_matrix(low.depth));
     EXPECT_LT((values.array() - std::complex<double>(0.0, low.frequency)).abs().minCoeff(), 0.1) << i;
   }
   EXPECT_GT(fast, 5);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "models/eigenvalues.hpp"
 #include "models/period_operator.hpp"
 #include "stability_cases.hpp"
 
@@ -16,7 +16,7 @@ double radius(const test::StabilityCase& cutting, double speed, double depth, co
   const PeriodMap map = period_map(cutting.cut, cutting.modes, speed, depth, depth, collocation);
   PeriodOperator march;
   march.set(map, depth);
-  return Eigen::EigenSolver<Eigen::MatrixXd>(test::written_out(march), false).eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(test::written_out(march)).cwiseAbs().maxCoeff();
 }
 
 TEST(PeriodMap, OrdersConvergeOnRandomCuts) {

@@ -2,18 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
+#include "dsp/numbers.hpp"
 #include "models/lobes.hpp"
 #include "rt/compensator.hpp"
 #include "tests/rt/compensator_bench.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Compensator, ActiveAsksNothingOfASilentController) {
   Bench bench{RuntimeMode::active};

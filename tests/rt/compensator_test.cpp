@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "dsp/numbers.hpp"
 #include "tests/rt/compensator_bench.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Compensator, OffSaysNothing) {
   Bench bench{RuntimeMode::off};

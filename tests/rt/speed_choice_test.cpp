@@ -9,12 +9,11 @@
 #include <random>
 #include <vector>
 
+#include "dsp/numbers.hpp"
 #include "models/lobes.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // A diagram of the spindle's range with random limits around the depth of 1 mm: stable and unstable stretches of random
 // width, now and then stable or unstable at every depth.

@@ -6,23 +6,24 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <random>
 #include <sstream>
 #include <string>
 
+#include "dsp/numbers.hpp"
+
 namespace stillcut {
 namespace {
 
-struct Case {
+struct PlanCase {
   MotionState start;
   double vf = 0.0, af = 0.0;
   MotionLimits limits;
 };
 
-VelocityPlan plan(const Case& c) { return plan_velocity(c.start, c.vf, c.af, c.limits); }
+VelocityPlan plan(const PlanCase& c) { return plan_velocity(c.start, c.vf, c.af, c.limits); }
 
-std::string text(const Case& c) {
+std::string text(const PlanCase& c) {
   std::ostringstream out;
   out.precision(17);
   out << "v0 " << c.start.velocity << " a0 " << c.start.acceleration << " vf " << c.vf << " af " << c.af << " amax "
@@ -35,8 +36,8 @@ class Cases {
  public:
   explicit Cases(std::uint64_t seed) : random_{seed} {}
 
-  Case next() {
-    Case c;
+  PlanCase next() {
+    PlanCase c;
     c.limits = {scale(), scale()};
     c.start = {signed_unit(), scale() * signed_unit(), c.limits.acceleration * signed_unit()};
     c.vf = scale() * signed_unit();
@@ -56,7 +57,7 @@ class Cases {
 };
 
 // The largest velocity that a double of this move can be asked to resolve.
-double velocity_scale(const Case& c, double duration) {
+double velocity_scale(const PlanCase& c, double duration) {
   return std::abs(c.start.velocity) + std::abs(c.vf) +
          std::max(c.limits.acceleration, std::abs(c.start.acceleration)) * duration;
 }
@@ -70,7 +71,7 @@ TEST(VelocityTrajectory, MatchesTheReferenceDurations) {
   while (std::getline(table, line)) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream row{line};
-    Case c;
+    PlanCase c;
     double duration = 0.0, brake = 0.0;
     row >> c.start.velocity >> c.start.acceleration >> c.vf >> c.af >> c.limits.acceleration >> c.limits.jerk >>
         duration >> brake;
@@ -106,7 +107,7 @@ TEST(VelocityTrajectory, IsAnAccelerationTrapezeByHand) {
 TEST(VelocityTrajectory, IsContinuousInsideItsLimitsAndReachesTheTarget) {
   Cases cases{1};
   for (int i = 0; i < 5'000; ++i) {
-    Case c = cases.next();
+    PlanCase c = cases.next();
     if (i % 5 == 0) c.start.acceleration *= 1.0 + 10.0 * cases.unit();  // a start beyond the limit
     const VelocityPlan found = plan(c);
     ASSERT_EQ(found.error, TrajectoryError::none) << text(c);
@@ -148,7 +149,7 @@ TEST(VelocityTrajectory, IsContinuousInsideItsLimitsAndReachesTheTarget) {
 TEST(VelocityTrajectory, PositionIsTheIntegralOfVelocity) {
   Cases cases{2};
   for (int i = 0; i < 1'000; ++i) {
-    Case c = cases.next();
+    PlanCase c = cases.next();
     c.start.position = 0.0;
     const VelocityTrajectory move = plan(c).trajectory;
     const double duration = move.duration();
@@ -167,8 +168,8 @@ TEST(VelocityTrajectory, PositionIsTheIntegralOfVelocity) {
 TEST(VelocityTrajectory, TakesAsLongBackwardsInTime) {
   Cases cases{3};
   for (int i = 0; i < 20'000; ++i) {
-    const Case c = cases.next();
-    const Case reversed{{0.0, c.vf, -c.af}, c.start.velocity, -c.start.acceleration, c.limits};
+    const PlanCase c = cases.next();
+    const PlanCase reversed{{0.0, c.vf, -c.af}, c.start.velocity, -c.start.acceleration, c.limits};
     const double forward = plan(c).trajectory.duration(), backward = plan(reversed).trajectory.duration();
     ASSERT_NEAR(forward, backward, 1e-12 * forward) << text(c);
   }
@@ -177,8 +178,8 @@ TEST(VelocityTrajectory, TakesAsLongBackwardsInTime) {
 TEST(VelocityTrajectory, MirrorsWithTheSigns) {
   Cases cases{4};
   for (int i = 0; i < 2'000; ++i) {
-    const Case c = cases.next();
-    const Case mirrored{{0.0, -c.start.velocity, -c.start.acceleration}, -c.vf, -c.af, c.limits};
+    const PlanCase c = cases.next();
+    const PlanCase mirrored{{0.0, -c.start.velocity, -c.start.acceleration}, -c.vf, -c.af, c.limits};
     const VelocityTrajectory a = plan(c).trajectory, b = plan(mirrored).trajectory;
     ASSERT_EQ(a.duration(), b.duration()) << text(c);
     const double t = cases.unit() * a.duration();
@@ -202,7 +203,7 @@ double highest_gain(double a0, double af, double amax, double j, double duration
 TEST(VelocityTrajectory, NoShorterMoveExists) {
   Cases cases{5};
   for (int i = 0; i < 300; ++i) {
-    const Case c = cases.next();
+    const PlanCase c = cases.next();
     const double a0 = c.start.acceleration, amax = c.limits.acceleration, j = c.limits.jerk;
     const double gain = c.vf - c.start.velocity;
     const double duration = plan(c).trajectory.duration();
@@ -227,7 +228,7 @@ TEST(VelocityTrajectory, NoShorterMoveExists) {
 TEST(VelocityTrajectory, PlannedAgainInFlightGoesOnFromThereAndArrivesNoLater) {
   Cases cases{6};
   for (int i = 0; i < 20'000; ++i) {
-    Case c = cases.next();
+    PlanCase c = cases.next();
     if (i % 2 == 0) c.af = 0.0;  // as the spindle does
     const VelocityTrajectory first = plan(c).trajectory;
     const double t = first.duration() * cases.unit();
@@ -253,9 +254,8 @@ TEST(VelocityTrajectory, StaysWhereItIsWhenThereIsNothingToDo) {
 }
 
 TEST(VelocityTrajectory, ReturnsWhyAMoveIsImpossible) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   const MotionLimits limits{1.0, 1.0};
-  for (double bad : {kNan, kInfinity, -kInfinity}) {
+  for (double bad : {kNaN, kInfinity, -kInfinity}) {
     EXPECT_EQ(plan_velocity({bad, 0, 0}, 1, 0, limits).error, TrajectoryError::not_finite);
     EXPECT_EQ(plan_velocity({0, bad, 0}, 1, 0, limits).error, TrajectoryError::not_finite);
     EXPECT_EQ(plan_velocity({0, 0, bad}, 1, 0, limits).error, TrajectoryError::not_finite);

@@ -14,7 +14,7 @@
 #include "drivers/files/dynamics_map_file.hpp"
 #include "models/milling_simulation.hpp"
 #include "models/posture.hpp"
-#include "tools/commands.hpp"
+#include "tools/programs.hpp"
 
 namespace stillcut {
 namespace {
@@ -31,14 +31,12 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-int run(std::vector<std::string> arguments) {
+int simulate(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"stillcut", "simulate"});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
-  CLI::App app{"test", "stillcut"};
-  add_simulate_command(app);
   testing::internal::CaptureStderr();
-  const int code = run_command_line(app, static_cast<int>(argv.size()), argv.data());
+  const int code = run_stillcut(static_cast<int>(argv.size()), argv.data());
   testing::internal::GetCapturedStderr();
   return code;
 }
@@ -46,7 +44,7 @@ int run(std::vector<std::string> arguments) {
 TEST(SimulateCommand, RowsAreAsTheContractSaysAndTheSameEveryTime) {
   const auto first = temporary("1.csv"), second = temporary("2.csv");
   for (const auto& file : {first, second})
-    ASSERT_EQ(run({kDemoCell, "--duration", "0.2", "--csv", file.string(), "--depth", "0:0,0.05:0,0.1:2"}), 0);
+    ASSERT_EQ(simulate({kDemoCell, "--duration", "0.2", "--csv", file.string(), "--depth", "0:0,0.05:0,0.1:2"}), 0);
   EXPECT_TRUE(bytes_of(first) == bytes_of(second));
   const std::string header = "time_s,fx_n,fy_n,fz_n,x_um,y_um,z_um,chip_um,spindle_speed_rpm\n";
   EXPECT_EQ(bytes_of(first).substr(0, header.size()), header);
@@ -68,7 +66,7 @@ TEST(SimulateCommand, RowsAreAsTheContractSaysAndTheSameEveryTime) {
 
 TEST(SimulateCommand, TheLogIsWhatTheCellsDecoderReads) {
   const auto log = temporary("cut.log");
-  ASSERT_EQ(run({kDemoCell, "--duration", "0.5", "--can", log.string(), "--speed", "0:8000", "--noise", "0"}), 0);
+  ASSERT_EQ(simulate({kDemoCell, "--duration", "0.5", "--can", log.string(), "--speed", "0:8000", "--noise", "0"}), 0);
   const Cell cell = read_cell(kDemoCell, {.bus = false});
   Decoder decoder(read_dbc(cell.can->dbc), *cell.can, kDemoCell);
   CandumpReader reader(log);
@@ -96,18 +94,18 @@ TEST(SimulateCommand, TheLogIsWhatTheCellsDecoderReads) {
 }
 
 TEST(SimulateCommand, ExitCodesTellWrongUsageFromBadInput) {
-  EXPECT_EQ(run({kDemoCell}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "-1"}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--depth", "0:x"}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--depth", "1:1,0:1"}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--depth", "0:-1"}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--rate", "1000"}), 2);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--csv", "-", "--json"}), 2);
-  EXPECT_EQ(run({"no-such-cell.toml", "--duration", "0.01"}), 3);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--posture", "nowhere"}), 3);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--plot", "cut.pdf"}), 3);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--csv", "/no/such/folder/cut.csv"}), 3);
-  EXPECT_EQ(run({kDemoCell, "--duration", "0.01", "--speed", "0:0"}), 3);
+  EXPECT_EQ(simulate({kDemoCell}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "-1"}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--depth", "0:x"}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--depth", "1:1,0:1"}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--depth", "0:-1"}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--rate", "1000"}), 2);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--csv", "-", "--json"}), 2);
+  EXPECT_EQ(simulate({"no-such-cell.toml", "--duration", "0.01"}), 3);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--posture", "nowhere"}), 3);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--plot", "cut.pdf"}), 3);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--csv", "/no/such/folder/cut.csv"}), 3);
+  EXPECT_EQ(simulate({kDemoCell, "--duration", "0.01", "--speed", "0:0"}), 3);
 }
 
 // rms of what does not repeat with the spindle: the displacement less that of one revolution before, m.

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "dsp/numbers.hpp"
 #include "tools/event_tally.hpp"
 
 namespace stillcut {
 namespace {
-
-const double kNaN = std::nan("");
 
 std::string row(const Event& event, std::int64_t origin_ns = 1'500'000'000'000'000'000) {
   std::ostringstream out;

@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Six speeds, 1000 to 6000 rpm: unstable throughout, a limit, two without, and two limits.
 LobeStudy study_of(std::size_t curves) {

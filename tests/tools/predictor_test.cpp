@@ -6,6 +6,7 @@
 
 #include "drivers/files/dynamics_map_file.hpp"
 #include "models/lobes.hpp"
+#include "tests/simulated_cut.hpp"
 #include "tests/tools/run_program.hpp"
 #include "tools/pipeline.hpp"
 
@@ -13,8 +14,6 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000, kNow = 1'700'000'000 * kSecond;
-
-Cell demo_cell() { return read_cell(EXAMPLES "/demo-cell/cell.toml", {.bus = false}); }
 
 // A robot at the posture that the demo cell names.
 RobotState at_home(const Cell& cell) {

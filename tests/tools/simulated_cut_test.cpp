@@ -13,8 +13,6 @@
 namespace stillcut {
 namespace {
 
-Cell demo_cell() { return read_cell(EXAMPLES "/demo-cell/cell.toml", {.bus = false}); }
-
 struct Told {
   double time_s;
   Event event;

@@ -10,7 +10,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Values after conversion are compared to one part in 10^14: the factor may round once.
 void expect_close(double value, double expected) { EXPECT_NEAR(value, expected, 1e-14 * std::abs(expected)); }
@@ -27,7 +27,7 @@ TEST(Cell, ReadsToolMaterialAndCutOfTheExampleInSiUnits) {
   expect_close(cell.tool->diameter, 0.025);
   EXPECT_EQ(cell.tool->teeth, 2);
   ASSERT_EQ(cell.tool->pitch.size(), 2U);
-  for (const double pitch : cell.tool->pitch) expect_close(pitch, kPi);
+  for (const double pitch : cell.tool->pitch) expect_close(pitch, pi);
   EXPECT_EQ(cell.tool->helix, 0.0);
   EXPECT_EQ(cell.tool->runout, 0.0);
   EXPECT_EQ(cell.tool->runout_angle, 0.0);
@@ -45,7 +45,7 @@ TEST(Cell, ReadsToolMaterialAndCutOfTheExampleInSiUnits) {
   expect_close(cell.cut->radial_depth, 0.0125);
   expect_close(cell.cut->axial_depth, 0.15e-3);
   expect_close(cell.cut->feed_per_tooth, 0.05e-3);
-  expect_close(cell.cut->spindle_speed, 3330.0 / 60.0 * 2.0 * kPi);
+  expect_close(cell.cut->spindle_speed, 3330.0 / 60.0 * 2.0 * pi);
   for (const double zero :
        {cell.cut->feed_direction, cell.cut->tilt, cell.cut->lead, cell.cut->redundancy, cell.cut->step_over}) {
     EXPECT_EQ(zero, 0.0);
@@ -63,10 +63,10 @@ TEST(Cell, ReadsRegionSpindleAndDynamicsOfTheExampleInSiUnits) {
   EXPECT_EQ(cell.region->polygon[3][0], 0.0);
   EXPECT_TRUE(cell.region->islands.empty());
 
-  expect_close(cell.spindle->min_speed, 2800.0 * kPi / 30.0);
-  expect_close(cell.spindle->max_speed, 3800.0 * kPi / 30.0);
-  expect_close(cell.spindle->acceleration, 2000.0 * kPi / 30.0);
-  expect_close(cell.spindle->jerk, 20000.0 * kPi / 30.0);
+  expect_close(cell.spindle->min_speed, 2800.0 * pi / 30.0);
+  expect_close(cell.spindle->max_speed, 3800.0 * pi / 30.0);
+  expect_close(cell.spindle->acceleration, 2000.0 * pi / 30.0);
+  expect_close(cell.spindle->jerk, 20000.0 * pi / 30.0);
 
   EXPECT_EQ(cell.dynamics->map, folder.path() / "map");
   EXPECT_TRUE(cell.dynamics->modal);
@@ -155,10 +155,10 @@ mode = "active"
 )");
   EXPECT_EQ(cell.tool->shape, ToolShape::ball);
   ASSERT_EQ(cell.tool->pitch.size(), 3U);
-  expect_close(cell.tool->pitch[1], 121.5 / 180.0 * kPi);
-  expect_close(cell.tool->helix, kPi / 6.0);
+  expect_close(cell.tool->pitch[1], 121.5 / 180.0 * pi);
+  expect_close(cell.tool->helix, pi / 6.0);
   expect_close(cell.tool->runout, 20e-6);
-  expect_close(cell.tool->runout_angle, kPi / 2.0);
+  expect_close(cell.tool->runout_angle, pi / 2.0);
   expect_close(cell.tool->axial_runout, -10e-6);
   expect_close(cell.material->kac, 200e6);
   expect_close(cell.material->kte, 20e3);
@@ -167,10 +167,10 @@ mode = "active"
   EXPECT_EQ(cell.material->process_damping, 5e5);
   EXPECT_EQ(cell.cut->milling, Milling::up);
   EXPECT_EQ(cell.cut->radial_depth, cell.tool->diameter);
-  expect_close(cell.cut->feed_direction, -kPi / 4.0);
-  expect_close(cell.cut->tilt, kPi / 12.0);
-  expect_close(cell.cut->lead, -kPi / 6.0);
-  expect_close(cell.cut->redundancy, kPi);
+  expect_close(cell.cut->feed_direction, -pi / 4.0);
+  expect_close(cell.cut->tilt, pi / 12.0);
+  expect_close(cell.cut->lead, -pi / 6.0);
+  expect_close(cell.cut->redundancy, pi);
   expect_close(cell.cut->step_over, 0.5e-3);
   EXPECT_EQ(cell.cut->path, PathKind::zigzag);
   ASSERT_EQ(cell.region->islands.size(), 2U);
@@ -183,8 +183,8 @@ mode = "active"
   EXPECT_EQ(cell.can->accelerometers[0].axis, (std::array<std::string, 3>{"", "A.Ay", ""}));
   EXPECT_EQ(cell.can->accelerometers[0].unit_m_per_s2, 9.80665);
   EXPECT_EQ(cell.can->accelerometers[0].counter, "");
-  expect_close(cell.can->accelerometers[0].rotation[1], kPi / 2.0);
-  expect_close(cell.can->accelerometers[0].rotation[2], -kPi);
+  expect_close(cell.can->accelerometers[0].rotation[1], pi / 2.0);
+  expect_close(cell.can->accelerometers[0].rotation[2], -pi);
   EXPECT_EQ(cell.can->accelerometers[1].sample_rate_hz, 1000.0);
   EXPECT_EQ(cell.can->spindle_speed, "");
   EXPECT_EQ(cell.lcm_url, "memq://");
@@ -194,7 +194,7 @@ mode = "active"
 TEST(Cell, GivesEqualPitchWhereNoneIsNamed) {
   const Cell cell = read("[tool]\nshape = \"end\"\ndiameter_mm = 8\nteeth = 4\n");
   ASSERT_EQ(cell.tool->pitch.size(), 4U);
-  for (const double pitch : cell.tool->pitch) expect_close(pitch, kPi / 2.0);
+  for (const double pitch : cell.tool->pitch) expect_close(pitch, pi / 2.0);
 }
 
 TEST(Cell, LeavesAbsentSectionsEmptyAndStartsInShadow) {

@@ -14,7 +14,7 @@
 namespace stillcut {
 namespace {
 
-std::string error_of(std::string_view text) {
+std::string csv_error(std::string_view text) {
   return message_of<InputError>([&] { parse_csv(text, "t.csv"); });
 }
 
@@ -54,14 +54,14 @@ TEST(Csv, RefusesWhatIsNoFiniteNumberWithLineAndColumn) {
 }
 
 TEST(Csv, NamesLineOfMalformedRows) {
-  EXPECT_EQ(error_of(""), "t.csv: is empty; a CSV file begins with a header row");
-  EXPECT_EQ(error_of("# comment only\n"), "t.csv: is empty; a CSV file begins with a header row");
-  EXPECT_TRUE(error_of("a,b\n1,2\n3\n").starts_with("t.csv:3: has 1 fields, the header 2"));
-  EXPECT_TRUE(error_of("a,b\n1,2,3\n").starts_with("t.csv:2: has 3 fields"));
-  EXPECT_TRUE(error_of("a,a\n").starts_with("t.csv:1: a: stands twice"));
-  EXPECT_TRUE(error_of("a\n1\n\"open\n\n").starts_with("t.csv:3: a quote is never closed"));
-  EXPECT_TRUE(error_of("a\n\"x\"y\n").starts_with("t.csv:2: text after the closing quote"));
-  EXPECT_TRUE(error_of("a\nx\"y\"\n").starts_with("t.csv:2: a quote within a field"));
+  EXPECT_EQ(csv_error(""), "t.csv: is empty; a CSV file begins with a header row");
+  EXPECT_EQ(csv_error("# comment only\n"), "t.csv: is empty; a CSV file begins with a header row");
+  EXPECT_TRUE(csv_error("a,b\n1,2\n3\n").starts_with("t.csv:3: has 1 fields, the header 2"));
+  EXPECT_TRUE(csv_error("a,b\n1,2,3\n").starts_with("t.csv:2: has 3 fields"));
+  EXPECT_TRUE(csv_error("a,a\n").starts_with("t.csv:1: a: stands twice"));
+  EXPECT_TRUE(csv_error("a\n1\n\"open\n\n").starts_with("t.csv:3: a quote is never closed"));
+  EXPECT_TRUE(csv_error("a\n\"x\"y\n").starts_with("t.csv:2: text after the closing quote"));
+  EXPECT_TRUE(csv_error("a\nx\"y\"\n").starts_with("t.csv:2: a quote within a field"));
 }
 
 TEST(Csv, NamesAMissingColumnAndFile) {

@@ -13,7 +13,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 const std::string kPostures =
     "posture,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg,x_mm,y_mm,z_mm\n"
@@ -49,12 +49,12 @@ TEST(DynamicsMapFile, ReadsPosturesAndModesInSiUnits) {
   const Posture& posture = map.postures[0];
   EXPECT_EQ(posture.id, "1");
   EXPECT_EQ(map.postures[1].id, "A2");
-  EXPECT_NEAR(posture.joints[1], -kPi / 2, 1e-15);
-  EXPECT_NEAR(posture.joints[5], kPi, 1e-15);
+  EXPECT_NEAR(posture.joints[1], -pi / 2, 1e-15);
+  EXPECT_NEAR(posture.joints[5], pi, 1e-15);
   EXPECT_NEAR(posture.position[0], 1.0, 1e-15);
   EXPECT_NEAR(posture.position[2], 0.0505, 1e-17);
   ASSERT_EQ(posture.modes.size(), 2U);
-  EXPECT_NEAR(posture.modes[0].natural_frequency, 17.54 * 2 * kPi, 1e-13);
+  EXPECT_NEAR(posture.modes[0].natural_frequency, 17.54 * 2 * pi, 1e-13);
   EXPECT_EQ(posture.modes[0].damping_ratio, 0.02);
   EXPECT_EQ(posture.modes[0].stiffness, 1.5e6);
   EXPECT_EQ(posture.modes[0].direction, (std::array<double, 3>{0.6, 0.0, -0.8}));
@@ -143,7 +143,7 @@ TEST(DynamicsMapFile, RefusesAFolderThatCannotBeMade) {
 }
 
 DynamicsMap random_map(std::mt19937& random, bool has_joints) {
-  std::uniform_real_distribution<double> angle(-kPi, kPi), place(-3, 3), frequency(5, 1000), ratio(0.001, 0.2);
+  std::uniform_real_distribution<double> angle(-pi, pi), place(-3, 3), frequency(5, 1000), ratio(0.001, 0.2);
   std::normal_distribution<double> component;
   DynamicsMap map;
   map.has_joints = has_joints;

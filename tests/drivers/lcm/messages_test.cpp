@@ -7,12 +7,12 @@
 #include <limits>
 #include <string>
 
+#include "dsp/numbers.hpp"
 #include "tests/drivers/lcm/random_messages.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Two messages are equal, bit for bit, when they encode to the same bytes; padding in the structs has no say.

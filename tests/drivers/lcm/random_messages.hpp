@@ -5,9 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 
+#include "dsp/numbers.hpp"
 #include "rt/signals.hpp"
 
 namespace stillcut {
@@ -77,8 +77,6 @@ class RandomMessages {
   }
 
  private:
-  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
   int whole(int min, int max) { return std::uniform_int_distribution<int>(min, max)(random_); }
   double uniform(double min, double max) { return std::uniform_real_distribution<double>(min, max)(random_); }
   bool coin() { return whole(0, 1) == 1; }

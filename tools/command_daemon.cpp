@@ -1,0 +1,28 @@
+// The daemon's command line; what it does is in daemon.cpp.
+#include "tools/commands.hpp"
+#include "tools/daemon.hpp"
+#include "tools/programs.hpp"
+
+namespace stillcut {
+
+int run_stillcutd(int argc, char** argv) {
+  CLI::App app{"Stillcut daemon: hears the cut over CAN, detects chatter, publishes corrections over LCM", "stillcutd"};
+  app.set_version_flag("--version", STILLCUT_VERSION);
+  DaemonOptions options;
+  app.add_option("CELL", options.cell, "cell file")->required();
+  app.add_option("--record", options.record, "write every frame that was used to FILE, as 'candump -L' would");
+  app.add_option("--events", options.events, "write the events to FILE as CSV");
+  app.add_option("--duration", options.duration_s, "end after this many seconds (default: on SIGTERM)");
+  app.add_option("--priority", options.priority, "SCHED_FIFO priority of the loop")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 99));
+  app.add_option("--cpu", options.cpu, "processor of the loop (default: any)");
+  app.add_flag("--json", options.json, "at the end print one JSON object");
+  app.add_flag("--audit", options.audit,
+               "abort (status 134) at the loop's first system call but receive, sleep and clock");
+  app.footer("Example:\n  stillcutd /etc/stillcut/cell.toml --record cut.log --events events.csv");
+  app.callback([&] { run_daemon(options); });
+  return run_command_line(app, argc, argv);
+}
+
+}  // namespace stillcut
