@@ -110,11 +110,9 @@ std::vector<DepthBand> depth_bands(const Tool& tool, const Material& material, c
   const auto cells = sample_cells(material, modes, tolerance, confidence.samples, confidence.seed);
   std::vector<std::vector<double>> depths(speeds.size());  // by speed, a sample each
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto report = [&](double share) {
-      if (progress) progress((static_cast<double>(i) + share) / static_cast<double>(cells.size()));
-    };
-    const auto limits = depth_limits(tool, cells[i].material, cut, cells[i].modes, speeds, settings, report);
+    const auto limits = traced_limits(tool, cells[i].material, cut, cells[i].modes, speeds, settings);
     for (std::size_t s = 0; s < speeds.size(); ++s) depths[s].push_back(limits[s].depth);
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(cells.size()));
   }
   std::vector<DepthBand> bands;
   bands.reserve(depths.size());

@@ -13,7 +13,7 @@
 namespace stillcut {
 
 // Relative standard deviations of the modes that a map predicts. The defaults are what tap tests repeated by hand and
-// inverse distance weighting typically leave; a map's own leave-one-out scatter replaces them where it is known.
+// inverse distance weighting typically leave; a map's own scatter (left_out_scatter) replaces them where it is known.
 struct ModalScatter {
   double frequency = 0.03;
   double damping = 0.2;
@@ -53,9 +53,9 @@ std::vector<UncertainCell> sample_cells(const Material& material, std::span<cons
 // depths as DepthLimit has them: NaN (always unstable) counts as 0, +inf as +inf.
 double depth_quantile(std::vector<double> limits, double share);
 
-// The band at every speed (rad/s), modes in workpiece axes. A sample costs as much as the lobes themselves. Throws
-// std::invalid_argument as depth_limits and sample_cells do and for a confidence out of range. `progress` is told the
-// share done.
+// The band at every speed (rad/s), modes in workpiece axes. Each sample's boundary is traced from speed to speed.
+// Throws std::invalid_argument as depth_limits and sample_cells do and for a confidence out of range. `progress` is
+// told the share done.
 std::vector<DepthBand> depth_bands(const Tool& tool, const Material& material, const Cut& cut,
                                    std::span<const Mode> modes, std::span<const double> speeds,
                                    const LobeSettings& settings, const Tolerance& tolerance,

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <span>
 #include <stdexcept>
-#include <tuple>
 
 #include "dsp/numbers.hpp"
+#include "models/mode_pairs.hpp"
+#include "models/posture_trend.hpp"
 #include "models/receptance.hpp"
 
 namespace stillcut {
@@ -18,11 +19,6 @@ double cosine(const Mode& a, const Mode& b) {
   return sum;
 }
 
-// 0 for equal modes; one octave apart counts as much as a right angle between the directions.
-double difference(const Mode& a, const Mode& b) {
-  return std::abs(std::log2(a.natural_frequency / b.natural_frequency)) + 1.0 - std::min(1.0, std::abs(cosine(a, b)));
-}
-
 Mode normalised(Mode mode) {
   const double length = std::hypot(mode.direction[0], mode.direction[1], mode.direction[2]);
   for (double& component : mode.direction) component /= length;
@@ -32,27 +28,26 @@ Mode normalised(Mode mode) {
 // Puts the modes of `posture` on the tracks as seen from `parent`, whose modes are on them already.
 void extend_tracks(std::vector<ModeTrack>& tracks, std::size_t parent, std::size_t posture,
                    std::span<const Mode> modes) {
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // difference, track, mode
+  std::vector<Mode> known;
+  std::vector<std::size_t> track_of;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    for (std::size_t m = 0; m < modes.size(); ++m) {
-      if (tracks[t][parent]) pairs.emplace_back(difference(*tracks[t][parent], modes[m]), t, m);
-    }
+    if (!tracks[t][parent]) continue;
+    known.push_back(*tracks[t][parent]);
+    track_of.push_back(t);
   }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<bool> placed(modes.size(), false);
-  for (const auto& [unused, t, m] : pairs) {
-    if (placed[m] || tracks[t][posture]) continue;
+  const auto pairs = pair_modes(modes, known);
+  for (std::size_t m = 0; m < modes.size(); ++m) {
     Mode mode = normalised(modes[m]);
+    if (!pairs[m]) {
+      tracks.emplace_back(tracks.empty() ? 0 : tracks.front().size());
+      tracks.back()[posture] = mode;
+      continue;
+    }
+    const std::size_t t = track_of[*pairs[m]];
     if (cosine(*tracks[t][parent], mode) < 0.0) {
       for (double& component : mode.direction) component = -component;
     }
     tracks[t][posture] = mode;
-    placed[m] = true;
-  }
-  for (std::size_t m = 0; m < modes.size(); ++m) {
-    if (placed[m]) continue;
-    tracks.emplace_back(tracks.empty() ? 0 : tracks.front().size());
-    tracks.back()[posture] = normalised(modes[m]);
   }
 }
 
@@ -89,19 +84,66 @@ std::vector<Mode> superposed(const DynamicsMap& map, std::span<const double> wei
   return modes;
 }
 
-std::vector<Mode> averaged(const DynamicsMap& map, std::span<const double> weights, const JointScale& scale) {
+// A parameter at the query: its weighted mean as `to` sees it, which keeps it physical whatever the sign of the
+// weights, and no farther beyond the measured ones than they lie apart.
+template <class To, class Back>
+double follow(const ModeTrack& track, std::span<const double> weights, double Mode::*parameter, To to, Back back) {
+  double sum = 0.0, low = kInfinity, high = -kInfinity;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    if (!track[i] || weights[i] == 0.0) continue;
+    const double value = to((*track[i]).*parameter);
+    sum += weights[i] * value;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return back(std::clamp(sum, low - (high - low), high + (high - low)));
+}
+
+// A track at the query along the slope of the map (models/posture_trend).
+Mode trend_mode(const DynamicsMap& map, const Posture& query, const ModeTrack& track, std::span<const double> weights,
+                const JointScale& scale) {
+  std::vector<double> present(weights.begin(), weights.end());
+  for (std::size_t i = 0; i < present.size(); ++i) present[i] = track[i] ? present[i] : 0.0;
+  const std::vector<double> along = trend_weights(map, query, present, scale);
+  const auto log = [](double x) { return std::log(x); };
+  const auto exp = [](double x) { return std::exp(x); };
+  Mode mode = weighted_mode(track, along, 1.0);  // its direction; the heaviest posture's where directions cancel
+  mode.natural_frequency = follow(track, along, &Mode::natural_frequency, log, exp);
+  mode.stiffness = follow(track, along, &Mode::stiffness, log, exp);
+  mode.damping_ratio = follow(
+      track, along, &Mode::damping_ratio, [](double x) { return std::log(x / (1.0 - x)); },
+      [](double x) { return 1.0 / (1.0 + std::exp(-x)); });
+  return mode;
+}
+
+// The tracks that are there at the query: those whose postures hold at least half of the weight.
+template <class Make>
+std::vector<Mode> modes_on_tracks(const DynamicsMap& map, std::span<const double> weights, const JointScale& scale,
+                                  Make make) {
   std::vector<Mode> modes;
   for (const ModeTrack& track : match_modes(map, scale)) {
     double total = 0.0;
     for (std::size_t i = 0; i < track.size(); ++i) total += track[i] ? weights[i] : 0.0;
-    if (total >= 0.5) modes.push_back(weighted_mode(track, weights, total));
+    if (total >= 0.5) modes.push_back(make(track, total));
   }
   if (modes.empty())
     throw std::invalid_argument("dynamics map: its postures have no mode in common; use interpolation \"frf\"");
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
   return modes;
 }
 
 }  // namespace
+
+void check_map(const DynamicsMap& map) {
+  for (const Posture& posture : map.postures) {
+    try {
+      check_modes(posture.modes);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("posture \"" + posture.id + "\": " + error.what());
+    }
+  }
+}
 
 std::vector<ModeTrack> match_modes(const DynamicsMap& map, const JointScale& scale) {
   const std::size_t count = map.postures.size();
@@ -130,18 +172,18 @@ std::vector<ModeTrack> match_modes(const DynamicsMap& map, const JointScale& sca
   }
 }
 
+std::vector<Mode> average_modes(const DynamicsMap& map, std::span<const double> weights, const JointScale& scale) {
+  return modes_on_tracks(map, weights, scale,
+                         [&](const ModeTrack& track, double total) { return weighted_mode(track, weights, total); });
+}
+
 PredictedPosture predict_posture(const DynamicsMap& map, const Posture& query, const Interpolation& interpolation) {
   const JointScale& scale = interpolation.joint_scale;
   const std::vector<double> weights = inverse_distance_weights(map, query, interpolation.power, scale);
-  for (const Posture& posture : map.postures) {
-    try {
-      check_modes(posture.modes);
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("posture \"" + posture.id + "\": " + error.what());
-    }
-  }
+  check_map(map);
   PredictedPosture result;
   result.posture = query;
+  result.in_joints = map.has_joints;
   const auto nearest = static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
   const Posture& neighbour = map.postures[nearest];
   result.nearest = neighbour.id;
@@ -154,12 +196,28 @@ PredictedPosture predict_posture(const DynamicsMap& map, const Posture& query, c
     if (std::isfinite(gap)) result.map_spacing = std::max(result.map_spacing, gap);
   }
   result.outside = map.postures.size() > 1 && result.nearest_distance > result.map_spacing;
-  result.posture.modes = result.nearest_distance == 0.0 ? neighbour.modes
-                         : interpolation.modal          ? averaged(map, weights, scale)
-                                                        : superposed(map, weights);
+  if (result.nearest_distance == 0.0) {
+    result.posture.modes = neighbour.modes;
+  } else if (!interpolation.modal) {
+    result.posture.modes = superposed(map, weights);
+    result.superposed = true;
+  } else if (interpolation.trend) {
+    result.posture.modes = modes_on_tracks(map, weights, scale, [&](const ModeTrack& track, double) {
+      return trend_mode(map, query, track, weights, scale);
+    });
+  } else {
+    result.posture.modes = average_modes(map, weights, scale);
+  }
   std::stable_sort(result.posture.modes.begin(), result.posture.modes.end(),
                    [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
   return result;
+}
+
+std::string outside_map_text(const PredictedPosture& predicted) {
+  const auto text = [&](double distance) { return posture_distance_text(distance, predicted.in_joints); };
+  return "posture \"" + predicted.posture.id + "\" lies outside the map: " + text(predicted.nearest_distance) +
+         " from the nearest measured posture \"" + predicted.nearest + "\", while those are at most " +
+         text(predicted.map_spacing) + " from their neighbours";
 }
 
 }  // namespace stillcut

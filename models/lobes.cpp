@@ -29,9 +29,9 @@ std::vector<DepthLimit> limits_by(const FloquetLimits& floquet, const Tool& tool
     return zeroth_order_limits(linear, turned, speeds, settings.max_depth);
   }
   if (modes.size() > kMostFloquetModes) {
-    throw std::invalid_argument("interpolation \"frf\" superposes " + std::to_string(modes.size()) +
-                                " modes, the Floquet lobes take at most " + std::to_string(kMostFloquetModes) +
-                                "; use interpolation = \"modal\", or method zoa");
+    throw std::invalid_argument("the Floquet lobes take at most " + std::to_string(kMostFloquetModes) + " modes, not " +
+                                std::to_string(modes.size()) +
+                                "; leave out those that matter least, or use method zoa");
   }
   return floquet(linear, turned);
 }
@@ -79,6 +79,15 @@ std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material,
   return limits_by(search, tool, material, cut, modes, speeds, settings);
 }
 
+std::vector<DepthLimit> traced_limits(const Tool& tool, const Material& material, const Cut& cut,
+                                      std::span<const Mode> modes, std::span<const double> speeds,
+                                      const LobeSettings& settings) {
+  const auto trace = [&](const LinearCut& linear, std::span<const Mode> turned) {
+    return traced_depth_limits(linear, turned, speeds, {.max_depth = settings.max_depth});
+  };
+  return limits_by(trace, tool, material, cut, modes, speeds, settings);
+}
+
 LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
                                  const SpindleLimits& spindle, std::span<const Mode> modes,
                                  const LobeSettings& settings) {
@@ -86,10 +95,7 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
     throw std::invalid_argument("lobe diagram: needs 2 to " + std::to_string(LobeDiagram::kMaxPoints) + " points");
   }
   const std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, settings.points);
-  const auto trace = [&](const LinearCut& linear, std::span<const Mode> turned) {
-    return traced_depth_limits(linear, turned, speeds, {.max_depth = settings.max_depth});
-  };
-  const std::vector<DepthLimit> limits = limits_by(trace, tool, material, cut, modes, speeds, settings);
+  const std::vector<DepthLimit> limits = traced_limits(tool, material, cut, modes, speeds, settings);
   LobeDiagram diagram;
   diagram.point_count = settings.points;
   for (std::size_t i = 0; i < limits.size(); ++i) {

@@ -34,9 +34,14 @@ std::vector<DepthLimit> depth_limits(const Tool& tool, const Material& material,
                                      std::span<const Mode> modes, std::span<const double> speeds,
                                      const LobeSettings& settings, const std::function<void(double)>& progress = {});
 
-// The diagram over the spindle's range, ready for the real-time thread but for its stamps: with the Floquet method a
-// boundary traced from speed to speed (lobe_trace.hpp), many times faster than depth_limits. Of more than kMaxModes
-// modes the summary names the most compliant. Throws as above.
+// The same with the boundary traced from speed to speed (lobe_trace.hpp), many times faster: within the trace's
+// tolerance, and blind to an unstable island narrower than three of the speeds, which are best close together.
+std::vector<DepthLimit> traced_limits(const Tool& tool, const Material& material, const Cut& cut,
+                                      std::span<const Mode> modes, std::span<const double> speeds,
+                                      const LobeSettings& settings);
+
+// The diagram over the spindle's range, traced, ready for the real-time thread but for its stamps. Of more than
+// kMaxModes modes the summary names the most compliant. Throws as above.
 LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, const Cut& cut,
                                  const SpindleLimits& spindle, std::span<const Mode> modes,
                                  const LobeSettings& settings = {});

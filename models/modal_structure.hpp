@@ -9,28 +9,24 @@
 #include <vector>
 
 #include "models/dynamics_map.hpp"
+#include "models/structure.hpp"
 
 namespace stillcut {
 
-class ModalStructure {
+class ModalStructure final : public Structure {
  public:
   // `step` in s. Throws std::invalid_argument unless every mode has frequency > 0, stiffness > 0, 0 <= damping < 1 and
   // a direction of length > 0 (it is normalised).
   ModalStructure(std::span<const Mode> modes, double step);
 
-  // A hammer blow: impulse in N s, workpiece axes.
-  void strike(const Eigen::Vector3d& impulse);
-
-  // Where the tool point will be after one step under a force (N) that goes from `begin` to `end`; changes nothing.
-  [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) const;
-
-  // Moves on by one step under the force that goes from `begin` to `end`.
-  void advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end);
-
-  // Tool point in workpiece axes: m, m/s, m/s^2 (the acceleration under the `end` force of the last step).
-  [[nodiscard]] Eigen::Vector3d displacement() const;
-  [[nodiscard]] Eigen::Vector3d velocity() const;
-  [[nodiscard]] Eigen::Vector3d acceleration() const;
+  // The force's displacement is exact here.
+  [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin,
+                                                   const Eigen::Vector3d& end) const override;
+  void advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) override;
+  void strike(const Eigen::Vector3d& impulse) override;
+  [[nodiscard]] Eigen::Vector3d displacement() const override;
+  [[nodiscard]] Eigen::Vector3d velocity() const override;
+  [[nodiscard]] Eigen::Vector3d acceleration() const override;
 
   // Kinetic plus potential energy of all modes, J.
   [[nodiscard]] double energy() const;

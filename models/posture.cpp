@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -44,6 +46,12 @@ double posture_distance(const Posture& a, const Posture& b, bool has_joints, con
     }
   }
   return std::sqrt(sum);
+}
+
+std::string posture_distance_text(double distance, bool has_joints) {
+  std::ostringstream text;
+  text << std::setprecision(3) << (has_joints ? rad_to_deg(distance) : distance * 1e3) << (has_joints ? " deg" : " mm");
+  return text.str();
 }
 
 std::vector<double> inverse_distance_weights(const DynamicsMap& map, const Posture& query, double power,

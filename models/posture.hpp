@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,9 @@ inline constexpr JointScale kEqualJoints{1, 1, 1, 1, 1, 1};
 // Distance in rad (has_joints: Euclidean over joint angles compared as angles, so 359 and 1 degree are 2 degrees apart;
 // surface paper, eq. 17) or in m.
 double posture_distance(const Posture& a, const Posture& b, bool has_joints, const JointScale& scale = kEqualJoints);
+
+// Such a distance for users: "12.5 deg" or "34 mm", three digits.
+std::string posture_distance_text(double distance, bool has_joints);
 
 // The weight of every posture of the map for a query: 1/d^p, divided by their sum (surface paper, eq. 18). A query that
 // stands on a measured posture (d = 0) gives that one all the weight. Throws std::invalid_argument for an empty map, a

@@ -1,15 +1,18 @@
 #include "tools/cell_posture.hpp"
 
+#include <array>
+#include <cstdio>
 #include <stdexcept>
 
 #include "drivers/files/dynamics_map_file.hpp"
 #include "models/linear_cut.hpp"
+#include "models/modal_refit.hpp"
 
 namespace stillcut {
 
 CellDynamics read_cell_dynamics(const Cell& cell) {
   const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
-  return {read_dynamics_map(dynamics.map), {.modal = dynamics.modal, .power = dynamics.power}};
+  return {read_dynamics_map(dynamics.map), {.modal = dynamics.modal, .power = dynamics.power, .trend = dynamics.trend}};
 }
 
 Posture posture_of(const Cell& cell, const DynamicsMap& map, const std::string& asked) {
@@ -37,11 +40,20 @@ PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamic
   }
 }
 
+PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked) {
+  return with_few_modes(predicted_posture(cell, dynamics, asked));
+}
+
 std::vector<std::string> stability_warnings(const Tool& tool, const Cut& cut, const PredictedPosture& predicted) {
   std::vector<std::string> lines = linear_cut_warnings(tool, cut);
-  if (predicted.outside) {
-    lines.push_back("posture " + predicted.posture.id + " lies outside the map, farther from posture \"" +
-                    predicted.nearest + "\" than measured postures from each other; the lobes are an extrapolation");
+  if (predicted.outside) lines.push_back(outside_map_text(predicted) + "; the lobes are an extrapolation");
+  if (predicted.fitted_from > 0) {
+    std::array<char, 180> line{};
+    std::snprintf(
+        line.data(), line.size(),
+        "interpolation \"frf\" superposes %zu modes; the lobes use %zu fitted ones (receptance off by %.2g %% rms)",
+        predicted.fitted_from, predicted.posture.modes.size(), 100.0 * predicted.fit_error);
+    lines.emplace_back(line.data());
   }
   return lines;
 }

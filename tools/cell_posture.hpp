@@ -27,8 +27,11 @@ Posture posture_of(const Cell& cell, const DynamicsMap& map, const std::string& 
 // The posture and its modes in workpiece axes. Throws InputError.
 PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked = {});
 
-// What a reader of lobes at this posture has to know, one line each: parts of the cell that they leave out, and a
-// posture outside the map. `tool` and `cut` are the cell's.
+// The same with no more modes than the stability solution is made for (with_few_modes). Throws InputError.
+PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked = {});
+
+// What a reader of lobes at this posture has to know, one line each: parts of the cell that they leave out, a posture
+// outside the map, modes that were fitted. `tool` and `cut` are the cell's.
 std::vector<std::string> stability_warnings(const Tool& tool, const Cut& cut, const PredictedPosture& predicted);
 
 }  // namespace stillcut

@@ -33,6 +33,7 @@ int run_stillcut(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", STILLCUT_VERSION);
   add_lobes_command(app);
+  add_map_command(app);
   add_replay_command(app);
   add_simulate_command(app);
   add_stability_command(app);

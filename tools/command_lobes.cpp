@@ -55,12 +55,12 @@ std::vector<double> speeds_of(const Cell& cell, const LobesOptions& options) {
 }
 
 // "frequency=0.03,damping=0.2,stiffness=0.1,ktc=0.1"; what is not named keeps its default.
-Tolerance parse_tolerance(const std::string& text) {
-  Tolerance tolerance;
-  const std::pair<const char*, double*> names[] = {{"frequency", &tolerance.modes.frequency},
-                                                   {"damping", &tolerance.modes.damping},
-                                                   {"stiffness", &tolerance.modes.stiffness},
-                                                   {"ktc", &tolerance.ktc}};
+ToleranceAsked parse_tolerance(const std::string& text) {
+  ToleranceAsked tolerance;
+  const std::pair<const char*, std::optional<double>*> names[] = {{"frequency", &tolerance.frequency},
+                                                                  {"damping", &tolerance.damping},
+                                                                  {"stiffness", &tolerance.stiffness},
+                                                                  {"ktc", &tolerance.ktc}};
   if (text.empty()) return tolerance;
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = std::min(part.find('='), part.size());
@@ -164,9 +164,10 @@ void add_lobes_command(CLI::App& app) {
                    "Probability, 0.5 to 0.99: adds the depth that is stable with it, as a band")
       ->check(CLI::Range(0.5, 0.99).description(""));
   command->add_option("--tolerance", options->tolerance,
-                      "Relative standard deviations of what is known of the cell "
-                      "(default: frequency=0.03,damping=0.2,stiffness=0.1,ktc=0.1)");
-  command->add_option("--samples", options->samples, "Diagrams computed for the band, each as long as the lobes' own")
+                      "Relative standard deviations of what is known of the cell, as frequency=0.03,damping=0.2,"
+                      "stiffness=0.1,ktc=0.1 (default: the map's leave-one-out scatter, ktc=0.1; these where the map "
+                      "is too small to tell)");
+  command->add_option("--samples", options->samples, "Diagrams computed for the band")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000).description(""));
   command->add_option("--cuts", options->cuts,

@@ -62,7 +62,9 @@ MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
   setup.tool = require(cell, cell.tool, "tool");
   setup.material = require(cell, cell.material, "material");
   setup.cut = require(cell, cell.cut, "cut");
-  setup.modes = predicted_posture(cell, read_cell_dynamics(cell), options.posture).posture.modes;
+  const PredictedPosture predicted = predicted_posture(cell, read_cell_dynamics(cell), options.posture);
+  if (predicted.outside) std::cerr << "stillcut: " << options.cell << ": " << outside_map_text(predicted) << '\n';
+  setup.modes = predicted.posture.modes;
   if (!options.depth.empty()) setup.axial_depth = parse_schedule("--depth", options.depth, 1e-3);
   if (!options.speed.empty()) setup.spindle_speed = parse_schedule("--speed", options.speed, rpm_to_rad_s(1.0));
   setup.force_noise = options.force_noise;

@@ -64,7 +64,7 @@ Judged compute(const StabilityOptions& options, bool with_verdicts) {
   const Cell& cell = judged.cell;
   judged.cut = require(cell, cell.cut, "cut");
   if (options.feed_direction_deg) judged.cut.feed_direction = deg_to_rad(*options.feed_direction_deg);
-  judged.predicted = predicted_posture(cell, read_cell_dynamics(cell), options.posture);
+  judged.predicted = stability_posture(cell, read_cell_dynamics(cell), options.posture);
   const LinearCut linear = linear_cut_of(cell, judged.cut, judged.predicted.posture.modes);
   judged.points = read_cut_points(options.points);
   const std::vector<Mode> modes = modes_in_feed_frame(judged.predicted.posture.modes, judged.cut.feed_direction);

@@ -55,6 +55,7 @@ nlohmann::ordered_json curve_json(const LobeStudy& study, const LobeCurve& curve
     }
     error = std::max(error, limit.error_estimate);
   }
+  const nlohmann::json fitted = predicted.fitted_from > 0 ? nlohmann::json(predicted.fitted_from) : nullptr;
   const bool floquet = settings.method == LobeMethod::floquet;
   nlohmann::ordered_json coupling = coupling_json(curve.coupling);
   coupling["below_hz"] = clean(study.coupling_below / kTwoPi);
@@ -62,6 +63,7 @@ nlohmann::ordered_json curve_json(const LobeStudy& study, const LobeCurve& curve
   nlohmann::ordered_json object{{"posture", predicted.posture.id},
                                 {"nearest_posture", predicted.nearest},
                                 {"outside_map", predicted.outside},
+                                {"modes_fitted_from", fitted},
                                 {"method", floquet ? "sdm" : "zoa"},
                                 {"feed_direction_deg", clean_deg(curve.cut.feed_direction)},
                                 {"max_depth_mm", clean(settings.max_depth * 1e3)},
@@ -70,12 +72,13 @@ nlohmann::ordered_json curve_json(const LobeStudy& study, const LobeCurve& curve
                                 {"modes", modes},
                                 {"points", points}};
   if (confidence) {
-    const Tolerance& tolerance = study.question.tolerance;
+    const Tolerance& tolerance = study.tolerance;
     object["confidence"] = confidence->probability;
     object["tolerance"] = {{"frequency", tolerance.modes.frequency},
                            {"damping", tolerance.modes.damping},
                            {"stiffness", tolerance.modes.stiffness},
-                           {"ktc", tolerance.ktc}};
+                           {"ktc", tolerance.ktc},
+                           {"from_map", study.map_scatter}};
   }
   return object;
 }

@@ -18,13 +18,18 @@
 
 namespace stillcut {
 
+// Relative standard deviations that a user stated.
+struct ToleranceAsked {
+  std::optional<double> frequency, damping, stiffness, ktc;
+};
+
 struct LobeQuestion {
   std::vector<std::string> postures;    // as --posture takes them; empty: the cell's
   std::vector<double> feed_directions;  // rad; empty: the cell's
   std::vector<double> speeds;           // rad/s
   LobeSettings settings;
   std::optional<Confidence> confidence;  // with a band
-  Tolerance tolerance;
+  ToleranceAsked tolerance;              // what is not stated is the map's leave-one-out scatter, or a default
 };
 
 struct LobeCurve {
@@ -38,6 +43,8 @@ struct LobeCurve {
 
 struct LobeStudy {
   LobeQuestion question;
+  Tolerance tolerance;                // of the bands
+  bool map_scatter = false;           // whether the map's leave-one-out scatter went into it
   double coupling_below = 0.0;        // rad/s, the highest frequency of mode coupling looked for
   std::vector<LobeCurve> curves;      // every posture in every feed direction
   std::vector<std::string> warnings;  // lines that the user must read

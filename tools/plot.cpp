@@ -19,6 +19,7 @@ struct View {
   Box box;
   Range x, y;  // y: of the logarithms on a logarithmic axis
   bool logarithmic = false;
+  const std::vector<std::string>* names = nullptr;  // of the x axis
   [[nodiscard]] double px(double value) const { return box.left + (value - x.low) / x.span() * box.width(); }
   [[nodiscard]] double py(double value) const {
     const double at = !logarithmic ? value : value > 0.0 ? std::log10(value) : std::isnan(value) ? value : y.low;
@@ -45,7 +46,22 @@ std::vector<Tick> ticks_of(Range range, int count, bool logarithmic) {
   return result;
 }
 
-std::vector<Tick> x_ticks(const View& view) { return ticks_of(view.x, 12, false); }
+// Names at 1, 2, ..., so many of them as have room.
+std::vector<Tick> name_ticks(const View& view) {
+  constexpr double kCharacter = 7.5;  // px, about
+  std::size_t longest = 1;
+  for (const std::string& name : *view.names) longest = std::max(longest, name.size());
+  const double room = view.box.width() / view.x.span(), wanted = kCharacter * static_cast<double>(longest + 2);
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::ceil(wanted / room)));
+  std::vector<Tick> result;
+  for (std::size_t i = 0; i < view.names->size(); i += step)
+    result.push_back({static_cast<double>(i + 1), (*view.names)[i]});
+  return result;
+}
+
+std::vector<Tick> x_ticks(const View& view) {
+  return view.names->empty() ? ticks_of(view.x, 12, false) : name_ticks(view);
+}
 std::vector<Tick> y_ticks(const View& view) {
   return ticks_of(view.y, std::max(3, static_cast<int>(view.box.height() / 34)), view.logarithmic);
 }
@@ -213,7 +229,7 @@ void write_figure(const Figure& figure, const std::filesystem::path& file) {
   for (const Panel& panel : figure.panels) {
     top += room_above(panel);
     const double bottom = top + room * panel.height / shares;
-    const View view{{kLeft, top, right, bottom}, x, y_range(panel), panel.y.logarithmic};
+    const View view{{kLeft, top, right, bottom}, x, y_range(panel), panel.y.logarithmic, &figure.x.names};
     draw_data(canvas, view, panel);
     draw_axes(canvas, view, panel, figure.x, &panel == &figure.panels.back());
     if (panel.image) draw_color_scale(canvas, view, *panel.image);

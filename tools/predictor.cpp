@@ -5,6 +5,7 @@
 
 #include "models/interpolation.hpp"
 #include "models/lobes.hpp"
+#include "models/modal_refit.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
@@ -42,11 +43,15 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
 NominalPrediction Predictor::nominal() const {
   try {
     LobeDiagram diagram = compute(posture_, cut_);
-    const bool outside = !diagram.valid;
-    return {diagram,
-            outside
-                ? cell_file_ + ": dynamics.posture lies far outside the map: no prediction is used; tap the robot there"
-                : std::string{}};
+    const PredictedPosture predicted = predict_posture(map_, posture_, interpolation_);
+    if (diagram.valid && predicted.superposed && predicted.posture.modes.size() > kMostRefitModes) {
+      return {diagram, cell_file_ +
+                           ": dynamics.interpolation: \"frf\" fits the modes anew at every posture, often too "
+                           "late for an arm that moves; use \"modal\" or \"trend\""};
+    }
+    if (diagram.valid) return {diagram, {}};
+    return {diagram, cell_file_ + ": dynamics.posture: " + outside_map_text(predicted) +
+                         "; no prediction is used; tap the robot there"};
   } catch (const std::invalid_argument& error) {
     LobeDiagram modes_only;
     summarise_modes(predict_posture(map_, posture_, interpolation_).posture.modes, modes_only);
@@ -77,7 +82,7 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
 }
 
 LobeDiagram Predictor::compute(const Posture& posture, const Cut& cut) const {
-  const PredictedPosture predicted = predict_posture(map_, posture, interpolation_);
+  const PredictedPosture predicted = with_few_modes(predict_posture(map_, posture, interpolation_));
   LobeDiagram diagram =
       compute_lobe_diagram(tool_, material_, cut, spindle_, predicted.posture.modes, {.points = kPoints});
   if (predicted.outside) diagram.valid = false;  // far from every tap test: say nothing rather than extrapolate

@@ -21,7 +21,8 @@ struct RegionSettings {
 
 struct DynamicsSettings {
   std::filesystem::path map;  // folder, absolute
-  bool modal = true;          // interpolation = "modal" | "frf"
+  bool modal = true;          // interpolation = "modal" | "frf" | "trend"
+  bool trend = false;         // "trend": modal too
   double power = 1.0;
   std::string posture;  // id, six joint angles in degrees, or x,y,z in mm; may be empty
 };

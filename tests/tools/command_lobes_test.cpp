@@ -103,6 +103,37 @@ TEST(LobesCommand, ConfidenceAddsTwoColumnsAroundTheLimit) {
   }
 }
 
+TEST(LobesCommand, TakesTheToleranceFromTheMapUnlessItIsStated) {
+  const DemoCell cell;
+  const auto tolerance = [&](std::initializer_list<std::string> more) {
+    std::vector<std::string> words = lobes({"--json", "--method", "zoa", "--confidence", "0.9"});
+    words.insert(words.end(), more);
+    const Finished done = run(words, cell.path());
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return json::parse(done.out)["tolerance"];
+  };
+  const json of_map = tolerance({});
+  EXPECT_EQ(of_map["from_map"], true);
+  EXPECT_EQ(of_map["ktc"], 0.1);
+  const json report = json::parse(run({"stillcut", "map", "cell.toml", "--json"}, cell.path()).out);
+  EXPECT_NEAR(of_map["frequency"].get<double>(), report["summary"]["modal"]["frequency_error"]["rms"].get<double>(),
+              1e-12);
+  const json stated = tolerance({"--tolerance", "damping=0.25,ktc=0"});
+  EXPECT_EQ(stated["damping"], 0.25);
+  EXPECT_EQ(stated["ktc"], 0.0);
+  EXPECT_EQ(stated["frequency"], of_map["frequency"]);
+}
+
+TEST(LobesCommand, FitsTheModesThatFrfSuperposesAndSaysSo) {
+  const DemoCell cell;
+  cell.change("interpolation = \"modal\"", "interpolation = \"frf\"");
+  const Finished done = run(lobes({"--json", "--posture", "10,-85,88,0,85,10"}), cell.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("superposes 30 modes; the lobes use 12 fitted ones"));
+  EXPECT_EQ(json::parse(done.out)["modes"].size(), 12U);
+  EXPECT_EQ(json::parse(done.out)["modes_fitted_from"], 30);
+}
+
 TEST(LobesCommand, DrawsEverythingAtOnce) {
   const DemoCell cell;
   (void)cell.write("cuts.csv",
