@@ -163,9 +163,9 @@ ModalRefit refit_modes(std::span<const Mode> modes, std::size_t most) {
   return result;
 }
 
-PredictedPosture with_few_modes(PredictedPosture predicted) {
+PredictedPosture with_few_modes(PredictedPosture predicted, std::size_t most) {
   std::vector<Mode>& modes = predicted.posture.modes;
-  if (!predicted.superposed || modes.size() <= kMostRefitModes) return predicted;
+  if (!predicted.superposed || modes.size() <= most) return predicted;
   predicted.fitted_from = modes.size();
   ModalRefit refit = refit_modes(modes);
   modes = std::move(refit.modes);

@@ -35,8 +35,8 @@ struct ModalRefit {
 // physical or `most` is 0.
 ModalRefit refit_modes(std::span<const Mode> modes, std::size_t most = kMostRefitModes);
 
-// For the stability solution: superposed modes beyond kMostRefitModes are fitted by so many, and the prediction says so
-// (fitted_from, fit_error). Every other prediction comes back as it is.
-PredictedPosture with_few_modes(PredictedPosture predicted);
+// For the stability solution: more than `most` superposed modes are fitted by kMostRefitModes, and the prediction says
+// so (fitted_from, fit_error). Every other prediction comes back as it is.
+PredictedPosture with_few_modes(PredictedPosture predicted, std::size_t most = kMostRefitModes);
 
 }  // namespace stillcut

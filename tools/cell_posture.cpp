@@ -6,6 +6,7 @@
 
 #include "drivers/files/dynamics_map_file.hpp"
 #include "models/linear_cut.hpp"
+#include "models/lobes.hpp"
 #include "models/modal_refit.hpp"
 
 namespace stillcut {
@@ -41,7 +42,7 @@ PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamic
 }
 
 PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked) {
-  return with_few_modes(predicted_posture(cell, dynamics, asked));
+  return with_few_modes(predicted_posture(cell, dynamics, asked), kMostFloquetModes);
 }
 
 std::vector<std::string> stability_warnings(const Tool& tool, const Cut& cut, const PredictedPosture& predicted) {

@@ -27,7 +27,7 @@ Posture posture_of(const Cell& cell, const DynamicsMap& map, const std::string& 
 // The posture and its modes in workpiece axes. Throws InputError.
 PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked = {});
 
-// The same with no more modes than the stability solution is made for (with_few_modes). Throws InputError.
+// The same with fitted modes where "frf" superposes more than the Floquet solution takes. Throws InputError.
 PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked = {});
 
 // What a reader of lobes at this posture has to know, one line each: parts of the cell that they leave out, a posture

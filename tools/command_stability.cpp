@@ -34,6 +34,7 @@ struct Judged {
   Cell cell;
   PredictedPosture predicted;
   Cut cut;
+  bool unequal_pitch = false;  // the cut then repeats from turn to turn, else from tooth to tooth
   std::vector<CutPoint> points;
   std::vector<CutStability> answers;  // one a point
 };
@@ -60,12 +61,17 @@ CutStability judge(const LinearCut& cut, std::span<const Mode> modes, const CutP
 }
 
 Judged compute(const StabilityOptions& options, bool with_verdicts) {
-  Judged judged{read_cell(options.cell, {.dbc = false, .bus = false}), {}, {}, {}, {}};
+  Judged judged{.cell = read_cell(options.cell, {.dbc = false, .bus = false}),
+                .predicted = {},
+                .cut = {},
+                .points = {},
+                .answers = {}};
   const Cell& cell = judged.cell;
   judged.cut = require(cell, cell.cut, "cut");
   if (options.feed_direction_deg) judged.cut.feed_direction = deg_to_rad(*options.feed_direction_deg);
   judged.predicted = stability_posture(cell, read_cell_dynamics(cell), options.posture);
   const LinearCut linear = linear_cut_of(cell, judged.cut, judged.predicted.posture.modes);
+  judged.unequal_pitch = !linear.pitch.empty();
   judged.points = read_cut_points(options.points);
   const std::vector<Mode> modes = modes_in_feed_frame(judged.predicted.posture.modes, judged.cut.feed_direction);
   Progress progress("stability");
@@ -119,8 +125,9 @@ void print_json(const Judged& judged) {
 }
 
 void print_table(const Judged& judged) {
-  std::printf("posture %s, feed direction %g°; radius of the vibration from one tooth to the next, stable below 1\n\n",
-              judged.predicted.posture.id.c_str(), rad_to_deg(judged.cut.feed_direction));
+  std::printf("posture %s, feed direction %g°; radius of the vibration from one %s to the next, stable below 1\n\n",
+              judged.predicted.posture.id.c_str(), rad_to_deg(judged.cut.feed_direction),
+              judged.unequal_pitch ? "turn" : "tooth");
   std::printf("%10s %10s %10s %9s  %-15s %-5s %11s\n", "speed", "depth", "radius", "± error", "verdict", "kind",
               "frequency");
   std::printf("%10s %10s %10s %9s  %-15s %-5s %11s\n", "rpm", "mm", "", "", "", "", "Hz");

@@ -204,6 +204,7 @@ TEST(FewModes, FitsSuperposedModesOnlyAndSaysHowWell) {
   for (int m = 0; m < 15; ++m) predicted.posture.modes.push_back(random_mode(random, 10, 300));
   EXPECT_EQ(with_few_modes(predicted).posture.modes.size(), 15U);  // measured ones are kept as they are
   predicted.superposed = true;
+  EXPECT_EQ(with_few_modes(predicted, 15).posture.modes.size(), 15U);
   const PredictedPosture few = with_few_modes(predicted);
   EXPECT_EQ(few.posture.modes.size(), kMostRefitModes);
   EXPECT_EQ(few.fitted_from, 15U);

@@ -124,14 +124,34 @@ TEST(LobesCommand, TakesTheToleranceFromTheMapUnlessItIsStated) {
   EXPECT_EQ(stated["frequency"], of_map["frequency"]);
 }
 
-TEST(LobesCommand, FitsTheModesThatFrfSuperposesAndSaysSo) {
+TEST(LobesCommand, FitsFewModesOnlyWhereFrfSuperposesMoreThanItTakesAndSaysSo) {
   const DemoCell cell;
   cell.change("interpolation = \"modal\"", "interpolation = \"frf\"");
-  const Finished done = run(lobes({"--json", "--posture", "10,-85,88,0,85,10"}), cell.path());
+  const auto command = lobes({"--json", "--posture", "10,-85,88,0,85,10"});
+  const auto exact = json::parse(run(command, cell.path()).out);
+  EXPECT_EQ(exact["modes"].size(), 30U);
+  EXPECT_TRUE(exact["modes_fitted_from"].is_null());
+  // Ten more postures beside those measured, with the same modes each: 90 superposed ones.
+  std::string postures = content_of(cell.path() / "map/postures.csv"),
+              modes = content_of(cell.path() / "map/modes.csv");
+  const CsvTable home = parse_csv(modes, "modes.csv");
+  for (int i = 1; i <= 10; ++i) {
+    const std::string id = "p" + std::to_string(i);
+    postures += id + "," + std::to_string(2 * i) + ",-90,90,0,90,0,0,0,0\n";
+    for (const CsvRow& row : home.rows()) {
+      if (row.fields[0] != "home") continue;
+      modes += id;
+      for (std::size_t field = 1; field < row.fields.size(); ++field) modes += "," + row.fields[field];
+      modes += "\n";
+    }
+  }
+  (void)cell.write("map/postures.csv", postures);
+  (void)cell.write("map/modes.csv", modes);
+  const Finished done = run(command, cell.path());
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("superposes 30 modes; the lobes use 12 fitted ones"));
+  EXPECT_THAT(done.err, HasSubstr("superposes 90 modes; the lobes use 12 fitted ones"));
   EXPECT_EQ(json::parse(done.out)["modes"].size(), 12U);
-  EXPECT_EQ(json::parse(done.out)["modes_fitted_from"], 30);
+  EXPECT_EQ(json::parse(done.out)["modes_fitted_from"], 90);
 }
 
 TEST(LobesCommand, DrawsEverythingAtOnce) {
