@@ -9,13 +9,14 @@
 
 #include "dsp/numbers.hpp"
 #include "stability_cases.hpp"
+#include "tests/sanitized.hpp"
 
 namespace stillcut {
 namespace {
 
 struct BandCell : test::RobotCell {
   std::vector<Mode> modes = test::robot_modes();
-  std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, 7);
+  std::vector<double> speeds = equally_spaced_speeds(spindle.min_speed, spindle.max_speed, test::kSanitized ? 2 : 7);
   // The zeroth order is fast and, like every linear theory, knows depth only as depth times force coefficient.
   LobeSettings settings{.method = LobeMethod::zeroth_order, .max_depth = 1.0};
 

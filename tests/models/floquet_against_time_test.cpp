@@ -8,6 +8,7 @@
 
 #include "models/floquet.hpp"
 #include "stability_cases.hpp"
+#include "tests/sanitized.hpp"
 
 namespace stillcut {
 namespace {
@@ -118,16 +119,15 @@ class TimeIntegration {
   std::vector<Eigen::Vector2d> history_;  // displacement at every half step of the last turn
 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kCuts = 40;  // the sanitizers make the integration slow; what they look for is seen in a few
-#else
-constexpr int kCuts = 600;
-#endif
+constexpr int kSeries = test::kSanitized ? 1 : 4;  // so that two processors share the work
+constexpr int kCuts = test::kSanitized ? 40 : 150;
+
+class FloquetAgainstTime : public ::testing::TestWithParam<int> {};
 
 // One to six modes, all immersions, equal and unequal pitch, a third with process damping.
-TEST(FloquetAgainstTime, VerdictsAgreeOnRandomCuts) {
+TEST_P(FloquetAgainstTime, VerdictsAgreeOnRandomCuts) {
   constexpr int kSteps = 1260;  // a turn; divides by every number of teeth
-  std::mt19937_64 random(2024);
+  std::mt19937_64 random(2024 + static_cast<unsigned>(GetParam()));
   int compared = 0, unstable = 0, uneven = 0;
   for (int i = 0; i < kCuts; ++i) {
     const bool unequal = i % 2 == 1;
@@ -153,6 +153,8 @@ TEST(FloquetAgainstTime, VerdictsAgreeOnRandomCuts) {
   EXPECT_GT(uneven, compared / 3);
   RecordProperty("compared", compared);
 }
+
+INSTANTIATE_TEST_SUITE_P(Series, FloquetAgainstTime, ::testing::Range(0, kSeries));
 
 }  // namespace
 }  // namespace stillcut

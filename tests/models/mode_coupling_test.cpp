@@ -10,6 +10,7 @@
 
 #include "models/eigenvalues.hpp"
 #include "stability_cases.hpp"
+#include "tests/sanitized.hpp"
 
 namespace stillcut {
 namespace {
@@ -94,7 +95,7 @@ class MeanCut {
 TEST(ModeCoupling, IsWhereTheStateMatrixTurnsUnstable) {
   std::mt19937_64 random(21);
   int limits = 0, free = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < (test::kSanitized ? 40 : 300); ++i) {
     const test::StabilityCase robot = random_robot(random);
     const MeanCut oracle(robot);
     constexpr double kDeepest = 0.02;
@@ -119,7 +120,7 @@ TEST(ModeCoupling, IsWhereTheStateMatrixTurnsUnstable) {
 TEST(ModeCoupling, AgreesWithIntegrationInTime) {
   std::mt19937_64 random(22);
   int met = 0;
-  while (met < 5) {
+  while (met < (test::kSanitized ? 1 : 5)) {
     const test::StabilityCase robot = random_robot(random);
     const ModeCouplingLimit limit = mode_coupling_limit(robot.cut, robot.modes, 0.02);
     if (!std::isfinite(limit.depth) || limit.frequency == 0.0) continue;
