@@ -20,12 +20,14 @@ constexpr double kSame = 1e-9;      // relative: two modes no farther apart than
 constexpr double kFitPoints = 2.0;  // to a half-width, for the polish
 constexpr std::size_t kMostFitPoints = 1500;
 
-double cosine(const Mode& a, const Mode& b) { return Vector3d(a.direction.data()).dot(Vector3d(b.direction.data())); }
+double direction_cosine(const Mode& a, const Mode& b) {
+  return Vector3d(a.direction.data()).dot(Vector3d(b.direction.data()));
+}
 
 bool copies(const Mode& a, const Mode& b) {
   return std::abs(a.natural_frequency - b.natural_frequency) <= kSame * a.natural_frequency &&
          std::abs(a.damping_ratio - b.damping_ratio) <= kSame * a.damping_ratio &&
-         1.0 - std::abs(cosine(a, b)) <= kSame * kSame + 1e-15;
+         1.0 - std::abs(direction_cosine(a, b)) <= kSame * kSame + 1e-15;
 }
 
 std::vector<Mode> without_copies(std::span<const Mode> modes) {
@@ -59,7 +61,7 @@ double inner_product(const Mode& a, const Mode& b) {
 
 // The same for the tensors u u^T h(t), Frobenius.
 double tensor_product(const Mode& a, const Mode& b) {
-  const double c = cosine(a, b);
+  const double c = direction_cosine(a, b);
   return c * c * inner_product(a, b);
 }
 

@@ -14,12 +14,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string fixed(double value, int decimals) {
+std::string with_decimals(double value, int decimals) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(decimals) << value;
   return text.str();
 }
-std::string percent(double share) { return fixed(100.0 * share, std::abs(share) < 0.0995 ? 2 : 1) + " %"; }
+std::string percent(double share) { return with_decimals(100.0 * share, std::abs(share) < 0.0995 ? 2 : 1) + " %"; }
 
 // Text of at least `width` characters, to the left or to the right of its column.
 std::string left(const std::string& text, std::size_t width) {
@@ -134,8 +134,8 @@ void print_report(const LeaveOneOut& report, std::ostream& out) {
     const LeftOutPrediction& any = posture.by(MapMethod::mean);
     out << left(posture.id, id_width) << left(posture.nearest, id_width)
         << right(posture_distance_text(posture.nearest_distance, report.in_joints), 9) << (posture.outside ? "*" : " ")
-        << right(fixed(any.modes.front().measured.natural_frequency / kTwoPi, 2) + " Hz", 10)
-        << right(fixed(any.measured_peak * 1e6, 3) + " um/N", 12);
+        << right(with_decimals(any.modes.front().measured.natural_frequency / kTwoPi, 2) + " Hz", 10)
+        << right(with_decimals(any.measured_peak * 1e6, 3) + " um/N", 12);
     for (const MapMethod method : kMapMethods) {
       const LeftOutPrediction& by = posture.by(method);
       const std::string count = std::to_string(by.spurious_peaks) + (lacks_a_mode(by) ? "-" : " ");
@@ -238,9 +238,10 @@ void print_prediction(const PredictedPosture& predicted, const ModalRefit& refit
   }
   out << "  frequency   damping    stiffness   direction\n";
   for (const Mode& mode : all > kMostRefitModes ? refit.modes : predicted.posture.modes) {
-    out << right(fixed(mode.natural_frequency / kTwoPi, 2) + " Hz", 11) << right(percent(mode.damping_ratio), 10)
-        << right(fixed(mode.stiffness * 1e-6, 3) + " N/um", 13) << "  ";
-    for (const double component : mode.direction) out << right(fixed(component, 3), 7);
+    out << right(with_decimals(mode.natural_frequency / kTwoPi, 2) + " Hz", 11)
+        << right(percent(mode.damping_ratio), 10) << right(with_decimals(mode.stiffness * 1e-6, 3) + " N/um", 13)
+        << "  ";
+    for (const double component : mode.direction) out << right(with_decimals(component, 3), 7);
     out << '\n';
   }
 }

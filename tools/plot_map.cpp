@@ -10,10 +10,10 @@ namespace stillcut {
 namespace {
 
 struct Style {
-  MapMethod method;
+  MapMethod method = MapMethod::mean;
   plot::Color color;
-  double size, shift;  // px; postures, so that points of one posture stand beside each other
-  const char* label;
+  double size = 0.0, shift = 0.0;  // px; postures, so that points of one posture stand beside each other
+  const char* label = "";
 };
 constexpr Style kStyles[] = {{MapMethod::mean, plot::kGrey, 6.0, -0.21, "mean of the others"},
                              {MapMethod::frf, plot::kOrange, 7.0, -0.07, "frf"},
