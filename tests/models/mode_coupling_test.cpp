@@ -95,7 +95,8 @@ class MeanCut {
 TEST(ModeCoupling, IsWhereTheStateMatrixTurnsUnstable) {
   std::mt19937_64 random(21);
   int limits = 0, free = 0;
-  for (int i = 0; i < (test::kSanitized ? 40 : 300); ++i) {
+  constexpr int kRobots = test::kSanitized ? 40 : 300;
+  for (int i = 0; i < kRobots; ++i) {
     const test::StabilityCase robot = random_robot(random);
     const MeanCut oracle(robot);
     constexpr double kDeepest = 0.02;
@@ -112,8 +113,8 @@ TEST(ModeCoupling, IsWhereTheStateMatrixTurnsUnstable) {
     EXPECT_GT(above.real(), 0.0) << i;
     EXPECT_NEAR(std::abs(above.imag()), limit.frequency, 1e-2 * robot.modes[0].natural_frequency) << i;
   }
-  EXPECT_GT(limits, 50);
-  EXPECT_GT(free, 50);
+  EXPECT_GT(limits, kRobots / 6);
+  EXPECT_GT(free, kRobots / 6);
 }
 
 // Runge-Kutta over the same equations: the motion dies away below the limit and grows above it, at its frequency.
