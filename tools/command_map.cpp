@@ -1,23 +1,25 @@
 // stillcut map: how far the dynamics map can be trusted between its postures, and what it predicts at one.
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "drivers/files/cell.hpp"
 #include "models/leave_one_out.hpp"
 #include "tools/cell_posture.hpp"
-#include "tools/commands.hpp"
 #include "tools/map_report.hpp"
 #include "tools/output_file.hpp"
+#include "tools/output_options.hpp"
 #include "tools/progress.hpp"
 
 namespace stillcut {
 namespace {
 
-struct MapOptions {
-  std::string cell, posture, interpolation, csv, plot;
-  bool json = false;
+struct MapOptions : OutputOptions {
+  std::string cell, posture;
+  std::optional<InterpolationKind> interpolation;
 };
 
 // Writes what was asked for; a table for people where standard output is free.
@@ -59,16 +61,10 @@ void predict(const MapOptions& options, const CellDynamics& dynamics) {
 }
 
 void run(const MapOptions& options) {
-  if (options.json && options.csv == "-") {
-    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
-  }
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  check_output_options(options);
   const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   CellDynamics dynamics = read_cell_dynamics(cell);
-  if (!options.interpolation.empty()) {
-    dynamics.interpolation.modal = options.interpolation != "frf";
-    dynamics.interpolation.trend = options.interpolation == "trend";
-  }
+  if (options.interpolation) dynamics.interpolation.kind = *options.interpolation;
   try {
     options.posture.empty() ? report(options, dynamics) : predict(options, dynamics);
   } catch (const std::invalid_argument& error) {
@@ -82,6 +78,9 @@ void add_map_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("map", "Can the dynamics map be trusted between its postures; what it predicts at one");
   const auto options = std::make_shared<MapOptions>();
+  std::map<std::string, InterpolationKind> kinds;
+  for (std::size_t i = 0; i < kInterpolationNames.size(); ++i)
+    kinds.emplace(kInterpolationNames[i], static_cast<InterpolationKind>(i));
   command->add_option("CELL", options->cell, "Cell file")->required();
   command->add_option("--posture", options->posture,
                       "Predict the modes there instead: id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm "
@@ -89,11 +88,9 @@ void add_map_command(CLI::App& app) {
   command
       ->add_option("--interpolation", options->interpolation,
                    "For --posture: modal, frf or trend (default: the cell's). The report compares all three")
-      ->check(CLI::IsMember({"modal", "frf", "trend"}))
+      ->transform(CLI::CheckedTransformer(kinds))
       ->needs("--posture");
-  command->add_option("--csv", options->csv, "Write the table; - is standard output");
-  command->add_option("--plot", options->plot, "Draw to a .svg or .png file");
-  command->add_flag("--json", options->json, "One JSON object on standard output");
+  add_output_options(*command, *options, "Write the table", "Draw");
   command->footer(
       "Every posture of the map is predicted from all the others, in four ways, and held beside its own measurement.\n"
       "Example: the report with a picture, then the modes at a posture that nobody measured:\n"
