@@ -7,7 +7,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kLargestLag = 0.035;  // rad between neighbours
-constexpr int kFewestOnBall = 12;
+constexpr int kFewestOnBall = 20;
 
 double lag_per_height(const Tool& tool) { return std::tan(tool.helix) / (0.5 * tool.diameter); }
 
