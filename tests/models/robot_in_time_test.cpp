@@ -1,0 +1,280 @@
+// Robots in time: energy, receptance from a tap, order of accuracy, a moving command, and what stops them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "models/arm_dynamics.hpp"
+#include "models/arm_modes.hpp"
+#include "models/feed_path.hpp"
+#include "models/four_axis_arm.hpp"
+#include "models/linearised_robot.hpp"
+#include "models/newmark_robot.hpp"
+#include "models/receptance.hpp"
+#include "tests/models/machining_arm.hpp"
+#include "tests/sanitized.hpp"
+
+namespace stillcut {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kStep = 1.0 / 25600.0;
+const Eigen::Vector3d kNothing = Eigen::Vector3d::Zero();
+const Eigen::Vector3d kTap = Eigen::Vector3d(0.6, 0.5, -0.6244997998398398);  // 1 N s, along no axis
+
+Arm undamped(Arm arm) {
+  for (ArmJoint& joint : arm.joints) joint.damping = 0.0;
+  return arm;
+}
+
+class EveryRobot : public ::testing::TestWithParam<bool> {
+ protected:
+  [[nodiscard]] static Arm arm() { return GetParam() ? test::machining_arm() : huynh_robot(); }
+};
+INSTANTIATE_TEST_SUITE_P(Robots, EveryRobot, ::testing::Bool(),
+                         [](const auto& robot) { return robot.param ? "SixJoints" : "FourAxes"; });
+
+// Gravity acts and is compensated; largest excursion of the energy at any step.
+TEST_P(EveryRobot, KeepsItsEnergyForTenSecondsAfterATap) {
+  const Arm free = undamped(arm());
+  NewmarkRobot robot(free, holding(home_angles(free)), kStep);
+  robot.strike(kTap);
+  const double energy = robot.energy();
+  EXPECT_GT(energy, 1e-3);
+  double worst = 0.0;
+  const int steps = static_cast<int>((test::kSanitized ? 0.3 : 10.0) / kStep);
+  for (int i = 0; i < steps; ++i) {
+    robot.advance(kNothing, kNothing);
+    worst = std::max(worst, std::abs(robot.energy() / energy - 1.0));
+  }
+  EXPECT_LT(worst, 1e-6);
+  RecordProperty("energy_off", std::to_string(1e12 * worst) + "e-12");
+}
+
+TEST_P(EveryRobot, WorkOfTheForceIsItsEnergy) {
+  const Arm free = undamped(arm());
+  NewmarkRobot robot(free, holding(home_angles(free)), kStep);
+  double work = 0.0;
+  Eigen::Vector3d force = kNothing;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d next = 300.0 * std::sin(2.0 * pi * 20.0 * (i + 1) * kStep) * Eigen::Vector3d(1, 0.4, -0.3);
+    const Eigen::Vector3d before = robot.displacement();
+    robot.advance(force, next);
+    work += 0.5 * (force + next).dot(robot.displacement() - before);
+    force = next;
+  }
+  EXPECT_NEAR(robot.energy(), work, 1e-6 * std::abs(work));
+}
+
+// The frequency response that a hammer test would compute: the transform of the tool's free motion after a unit
+// impulse, by the trapezoidal rule, with the tail that has not decayed left out as it is below 1e-5.
+template <class Robot>
+Eigen::Vector3cd tapped(Robot& robot, const Eigen::Vector3d& tap, const std::vector<double>& frequencies,
+                        double seconds, std::vector<Eigen::Vector3cd>& response) {
+  robot.strike(tap);
+  response.assign(frequencies.size(), Eigen::Vector3cd::Zero());
+  std::vector<std::complex<double>> turn, phase(frequencies.size(), 1.0);
+  for (const double w : frequencies) turn.push_back(std::polar(1.0, -w * kStep));
+  for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) {
+    const Eigen::Vector3d x = robot.displacement() * ((i == 0 ? 0.5 : 1.0) * kStep);
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      response[k] += phase[k] * x;
+      phase[k] *= turn[k];
+    }
+    robot.advance(kNothing, kNothing);
+  }
+  return response.front();
+}
+
+// Peaks and their flanks, two half bandwidths to either side.
+std::vector<double> around(const std::vector<Mode>& modes) {
+  std::vector<double> frequencies;
+  for (const Mode& mode : modes) {
+    for (const double shift : {-2.0, -1.0, 0.0, 1.0, 2.0})
+      frequencies.push_back(mode.natural_frequency * (1.0 + shift * std::min(mode.damping_ratio, 0.1)));
+  }
+  return frequencies;
+}
+
+TEST_P(EveryRobot, TapReturnsTheReceptance) {
+  const Arm whole = arm();
+  const LinearArm linear = linear_arm(whole, home_angles(whole));
+  const std::vector<Mode> modes = tool_modes(linear);
+  const std::vector<double> frequencies = around(modes);
+  const double seconds = test::kSanitized ? 1.0 : 6.0;
+  for (int axis = 0; axis < (test::kSanitized ? 1 : 3); ++axis) {
+    const Eigen::Vector3d tap = Eigen::Vector3d::Unit(axis);
+    std::vector<Eigen::Vector3cd> found;
+    NewmarkRobot newmark(whole, holding(home_angles(whole)), kStep);
+    tapped(newmark, tap, frequencies, seconds, found);
+    double worst = 0.0;
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      const Eigen::Matrix3cd exact = arm_receptance(linear, frequencies[k]);
+      worst = std::max(worst, (found[k] - exact.col(axis)).norm() / exact.norm());
+    }
+    EXPECT_LT(worst, test::kSanitized ? 0.2 : 0.01) << "whole robot, axis " << axis;
+    RecordProperty("whole_" + std::to_string(axis), std::to_string(worst));
+
+    LinearisedRobot fast([&](const JointVector& q) { return linear_arm(whole, q); }, holding(home_angles(whole)),
+                         kStep);
+    tapped(fast, tap, frequencies, seconds, found);
+    worst = 0.0;
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      const Eigen::Matrix3cd exact = receptance(modes, frequencies[k]);
+      worst = std::max(worst, (found[k] - exact.col(axis)).norm() / exact.norm());
+    }
+    EXPECT_LT(worst, test::kSanitized ? 0.2 : 0.01) << "modes, axis " << axis;
+    RecordProperty("modes_" + std::to_string(axis), std::to_string(worst));
+  }
+}
+
+TEST_P(EveryRobot, StandsStillUnderItsOwnWeight) {
+  const Arm heavy = arm();
+  NewmarkRobot robot(heavy, holding(home_angles(heavy)), kStep);
+  for (int i = 0; i < 1000; ++i) robot.advance(kNothing, kNothing);
+  EXPECT_LT(robot.displacement().norm(), 1e-14);
+  EXPECT_LT(robot.acceleration().norm(), 1e-10);
+}
+
+TEST_P(EveryRobot, HalfTheStepIsAQuarterOfTheError) {
+  const Arm damped = arm();
+  const auto end = [&](int steps) {
+    NewmarkRobot robot(damped, holding(home_angles(damped)), 0.02 / steps);
+    robot.strike(20.0 * kTap);
+    for (int i = 0; i < steps; ++i) robot.advance(kNothing, kNothing);
+    return robot.displacement();
+  };
+  const Eigen::Vector3d fine = end(6400);
+  EXPECT_NEAR((end(200) - fine).norm() / (end(400) - fine).norm(), 4.0, 0.15);
+}
+
+TEST(NewmarkRobot, PredictsWhereItWillBeAndSaysHowItMoves) {
+  const Arm arm = test::machining_arm();
+  NewmarkRobot robot(arm, holding(home_angles(arm)), kStep);
+  robot.strike(kTap);
+  Eigen::Vector3d force = kNothing, before, velocity;
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector3d next = 200.0 * std::sin(0.02 * i) * kTap;
+    const Eigen::Vector3d predicted = robot.displacement_after(force, next);
+    before = robot.displacement();
+    velocity = robot.velocity();
+    robot.advance(force, next);
+    ASSERT_LT((predicted - robot.displacement()).norm(), 1e-9 * robot.displacement().norm() + 1e-15);
+    force = next;
+  }
+  EXPECT_LT(((robot.displacement() - before) / kStep - 0.5 * (velocity + robot.velocity())).norm(), 1e-6);
+  const Eigen::Vector3d now = robot.velocity(), accelerated = robot.acceleration();
+  robot.advance(force, force);
+  EXPECT_LT(((robot.velocity() - now) / kStep - 0.5 * (accelerated + robot.acceleration())).norm(),
+            1e-3 * accelerated.norm());
+}
+
+// The tool follows the paper's feed profile; on the move the joints' dampers drag it behind by D q'/K.
+TEST(NewmarkRobot, FollowsTheFeedPathOfThePaper) {
+  const Arm arm = huynh_robot();
+  const FeedPath path{{1.1, 0.0, 0.0}, Eigen::Vector3d::UnitX(), 3.7 / 60.0};
+  const JointPath command = [&](double time) { return four_axis_angles({}, feed_position(path, time)); };
+  NewmarkRobot robot(arm, command, 1e-3);
+  double largest = 0.0;
+  for (int i = 0; i < 1500; ++i) {
+    robot.advance(kNothing, kNothing);
+    largest = std::max(largest, robot.displacement().norm());
+  }
+  EXPECT_LT(largest, 60e-6);
+  const JointVector rate = (command(1.5) - command(1.499)) / 1e-3;
+  JointVector lag(4);
+  for (int i = 0; i < 4; ++i)
+    lag[i] =
+        -arm.joints[static_cast<std::size_t>(i)].damping * rate[i] / arm.joints[static_cast<std::size_t>(i)].stiffness;
+  const ArmPose pose = arm_pose(arm, command(1.5));
+  EXPECT_LT((robot.displacement() - tool_velocity(arm, pose, lag)).norm(), 2e-6);
+  Arm relative = arm;
+  relative.damps_joint_velocity = false;
+  NewmarkRobot other(relative, command, 1e-3);
+  for (int i = 0; i < 1500; ++i) other.advance(kNothing, kNothing);
+  EXPECT_LT(other.displacement().norm(), 2e-6);
+}
+
+TEST(LinearisedRobot, TakesItsMotionAlongAsThePostureMoves) {
+  const Arm arm = huynh_robot();
+  const FeedPath path{{1.1, 0.0, 0.0}, Eigen::Vector3d::UnitY(), 0.3};
+  const JointPath command = [&](double time) { return four_axis_angles({}, feed_position(path, time + 1.0)); };
+  const auto linearise = [&](const JointVector& q) { return linear_arm(arm, q); };
+  LinearisedRobot robot(linearise, command, kStep, 1e-3), coarse(linearise, command, kStep, 1e-2);
+  robot.strike(kTap);
+  coarse.strike(kTap);
+  const double energy = robot.energy();
+  double largest = 0.0, apart = 0.0, highest = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    robot.advance(kNothing, kNothing);
+    coarse.advance(kNothing, kNothing);
+    largest = std::max(largest, robot.displacement().norm());
+    apart = std::max(apart, (robot.displacement() - coarse.displacement()).norm());
+    highest = std::max(highest, robot.energy());
+  }
+  EXPECT_GT(robot.linearisations(), 20);
+  EXPECT_LT(apart, 0.05 * largest);
+  EXPECT_LT(highest, 1.001 * energy);  // nothing is gained on the way
+}
+
+template <class Call>
+std::string why_stopped(Call&& call) {
+  try {
+    call();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Robots, StopWithTheTimeAndTheReason) {
+  const Arm arm = test::machining_arm();
+  const JointPath home = holding(home_angles(arm));
+  const auto linearise = [&](const JointVector& q) { return linear_arm(arm, q); };
+  for (const std::string& reason : {why_stopped([&] { NewmarkRobot(arm, home, 0.01); }),
+                                    why_stopped([&] { LinearisedRobot(linearise, home, 0.01); })}) {
+    EXPECT_EQ(reason.find("at 0 s: the step of 10 ms is too large: the arm's"), 0U) << reason;
+  }
+  const Eigen::Vector3d huge(1e7, 0, 0);
+  NewmarkRobot robot(arm, home, kStep);
+  LinearisedRobot fast(linearise, home, kStep);
+  for (const std::string& reason : {why_stopped([&] {
+                                      while (true) robot.advance(huge, huge);
+                                    }),
+                                    why_stopped([&] {
+                                      while (true) fast.advance(huge, huge);
+                                    })}) {
+    EXPECT_EQ(reason.find("at 0.0"), 0U) << reason;
+    EXPECT_NE(reason.find("the motion diverges"), std::string::npos) << reason;
+  }
+  EXPECT_TRUE(robot.displacement().allFinite());
+  const Eigen::Vector3d nothing_known(NAN, 0, 0);
+  EXPECT_NE(why_stopped([&] { robot.advance(kNothing, nothing_known); }), "");
+  EXPECT_TRUE(robot.displacement().allFinite());
+  EXPECT_THROW(NewmarkRobot(arm, home, 0.0), std::invalid_argument);
+  EXPECT_THROW(NewmarkRobot(arm, holding(JointVector::Zero(3)), kStep), std::invalid_argument);
+}
+
+// A force that grows with the tool's own motion, faster than dampers take it away, as in a chatter that nothing stops.
+TEST(Robots, UnstableCutEndsInAReasonNotInInfinities) {
+  const Arm arm = huynh_robot();
+  NewmarkRobot robot(arm, holding(home_angles(arm)), kStep);
+  robot.strike(kTap);
+  const std::string reason = why_stopped([&] {
+    for (int i = 0; i < 400000; ++i) {
+      const Eigen::Vector3d force = 3e5 * robot.velocity();
+      robot.advance(force, force);
+    }
+  });
+  EXPECT_NE(reason.find("leaves its command by more than 0.2 rad"), std::string::npos) << reason;
+  EXPECT_TRUE(robot.displacement().allFinite());
+}
+
+}  // namespace
+}  // namespace stillcut
