@@ -130,7 +130,7 @@ TEST(RobotMapCommand, RefusesWithOneLine) {
       {{"--robot", kRobot, "--postures", "beyond.csv", "--out", "map"}, 3, "joint_1 at 200.0 deg is beyond its limits"},
       {{"--robot", kRobot, "--postures", "twice.csv", "--out", "map"}, 3, "stands twice"},
       {{"--robot", "undamped.urdf", "--out", "map"}, 3, "undamped.urdf: posture home: a mode has no damping"},
-      {{"--robot", "massless.urdf", "--out", "map"}, 3, "massless.urdf:13: link shoulder has no <inertial>"},
+      {{"--robot", "massless.urdf", "--out", "map"}, 3, "massless.urdf:14: link shoulder has no <inertial>"},
       {{"--robot", "stiff.urdf", "--out", "map"}, 3, "joint joint_1 has no stiffness"},
   };
   for (const RobotRefusal& refusal : refusals) {
