@@ -65,13 +65,11 @@ Eigen::Vector3d LinearisedRobot::displacement_after(const Eigen::Vector3d& begin
 }
 
 void LinearisedRobot::advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
-  const JointVector angles = command_(time_);
-  if (!((angles - posture_).cwiseAbs().maxCoeff() <= stale_)) {
-    try {
-      linearise_at(angles);
-    } catch (const std::invalid_argument& error) {
-      stop(error.what());
-    }
+  try {
+    const JointVector angles = command_(time_);
+    if (!((angles - posture_).cwiseAbs().maxCoeff() <= stale_)) linearise_at(angles);
+  } catch (const std::invalid_argument& error) {
+    stop(error.what());
   }
   structure_.advance(begin, end);
   time_ += step_;

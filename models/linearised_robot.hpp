@@ -24,7 +24,8 @@ class LinearisedRobot final : public Structure {
   [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin,
                                                    const Eigen::Vector3d& end) const override;
   // Throws std::runtime_error, with the time and the reason, where the tool is more than 0.1 m from its command, the
-  // motion is not finite, or the posture that the arm has come to has no modes.
+  // motion is not finite, the posture that the arm has come to has no modes, or the command says
+  // (std::invalid_argument) that the arm cannot follow.
   void advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) override;
   void strike(const Eigen::Vector3d& impulse) override { structure_.strike(impulse); }
   [[nodiscard]] Eigen::Vector3d displacement() const override { return structure_.displacement(); }

@@ -74,7 +74,12 @@ void NewmarkRobot::refactor() {
 }
 
 NewmarkRobot::Command NewmarkRobot::command_after() const {
-  Command command{command_(time_ + step_), {}, {}, {}};
+  Command command;
+  try {
+    command.end = command_(time_ + step_);
+  } catch (const std::invalid_argument& error) {
+    stop(error.what());
+  }
   command.change = command.end - command_angles_;
   command.middle = command_angles_ + 0.5 * command.change;
   const bool stands = (command.change.array() == 0.0).all();

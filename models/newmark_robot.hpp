@@ -36,7 +36,8 @@ class NewmarkRobot final : public Structure {
   [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin,
                                                    const Eigen::Vector3d& end) const override;
   // Throws std::runtime_error, with the time and the reason, where the iteration does not settle, a joint is more than
-  // 0.2 rad from its command, or the motion is not finite. The state is then that before the step.
+  // 0.2 rad from its command, or the motion is not finite; or where the
+  // command says (std::invalid_argument) that the arm cannot follow. The state is then that before the step.
   void advance(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) override;
   void strike(const Eigen::Vector3d& impulse) override;
   [[nodiscard]] Eigen::Vector3d displacement() const override;
@@ -56,7 +57,7 @@ class NewmarkRobot final : public Structure {
   struct Command {  // over a step: middle angles, change, and what bears the weight in the middle
     JointVector end, middle, change, compensation;
   };
-  [[nodiscard]] Command command_after() const;
+  [[nodiscard]] Command command_after() const;  // stops where the arm cannot follow its path
   [[nodiscard]] JointVector torques(const Command& command, const Eigen::Vector3d& force,
                                     const JointVector& next) const;
   void refactor();

@@ -1,6 +1,7 @@
 // Robots in time: energy, receptance from a tap, order of accuracy, a moving command, and what stops them.
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -175,6 +176,63 @@ TEST(NewmarkRobot, PredictsWhereItWillBeAndSaysHowItMoves) {
             1e-3 * accelerated.norm());
 }
 
+// Where the mass matrix does not change the rule is Newmark's own (1/4, 1/2).
+TEST(NewmarkRobot, IsNewmarksRuleWhereTheMassIsConstant) {
+  Arm arm = huynh_robot();
+  arm.joints.resize(1);
+  arm.tool = {0.5, 0.0, 0.3};
+  const double mass = linear_arm(arm, JointVector::Zero(1)).mass(0, 0), damping = arm.joints[0].damping,
+               stiffness = arm.joints[0].stiffness, h = 1e-3;
+  NewmarkRobot robot(arm, holding(JointVector::Zero(1)), h);
+  robot.strike({0, 2.0, 0});
+  double x = 0.0, v = 2.0 * 0.5 / mass, a = -damping * v / mass;
+  for (int i = 0; i < 200; ++i) {
+    const double predicted = x + h * v + h * h / 4.0 * a, speed = v + h / 2.0 * a;
+    a = -(damping * speed + stiffness * predicted) / (mass + h / 2.0 * damping + h * h / 4.0 * stiffness);
+    x = predicted + h * h / 4.0 * a;
+    v = speed + h / 2.0 * a;
+    robot.advance(kNothing, kNothing);
+    ASSERT_NEAR(robot.angles()[0], x, 1e-11 * 2e-3) << i;
+  }
+}
+
+// Large swings of a soft arm, where everything is nonlinear, against Runge and Kutta's rule on d'Alembert's equations.
+TEST_P(EveryRobot, SwingsAsDAlembertsEquationsSay) {
+  Arm soft = arm();
+  for (ArmJoint& joint : soft.joints) {
+    joint.stiffness = 3e4;
+    joint.damping *= 0.1;
+  }
+  const JointVector home = home_angles(soft);
+  const JointVector held = gravity_torques(soft, arm_pose(soft, home));
+  const double h = 2e-4;
+  NewmarkRobot robot(soft, holding(home), h / 2.0);  // second order against fourth
+  robot.strike(100.0 * kTap);
+  const auto accelerations = [&](const JointVector& q, const JointVector& v) {
+    const EquationsOfMotion equations = equations_of_motion(soft, arm_pose(soft, q), v);
+    JointVector torque = held - equations.gravity - equations.coriolis;
+    for (int i = 0; i < soft.size(); ++i) {
+      const ArmJoint& joint = soft.joints[static_cast<std::size_t>(i)];
+      torque[i] -= joint.stiffness * (q[i] - home[i]) + joint.damping * v[i];
+    }
+    return JointVector(equations.mass.llt().solve(torque));
+  };
+  JointVector q = home, v = robot.velocities();
+  double largest = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const JointVector a1 = accelerations(q, v), v2 = v + h / 2 * a1, a2 = accelerations(q + h / 2 * v, v2),
+                      v3 = v + h / 2 * a2, a3 = accelerations(q + h / 2 * v2, v3), v4 = v + h * a3,
+                      a4 = accelerations(q + h * v3, v4);
+    q += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    for (int half = 0; half < 2; ++half) robot.advance(kNothing, kNothing);
+    largest = std::max(largest, (q - home).cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(largest, 0.05);
+  EXPECT_LT((robot.angles() - q).norm(), 1e-4 * largest);
+  EXPECT_LT((robot.velocities() - v).norm(), 1e-3 * v.norm());
+}
+
 // The tool follows the paper's feed profile; on the move the joints' dampers drag it behind by D q'/K.
 TEST(NewmarkRobot, FollowsTheFeedPathOfThePaper) {
   const Arm arm = huynh_robot();
@@ -254,6 +312,20 @@ TEST(Robots, StopWithTheTimeAndTheReason) {
     EXPECT_NE(reason.find("the motion diverges"), std::string::npos) << reason;
   }
   EXPECT_TRUE(robot.displacement().allFinite());
+  const FeedPath away{{1.7, 0.0, 0.0}, Eigen::Vector3d::UnitX(), 1.0};
+  const JointPath path = [&](double time) { return four_axis_angles({}, feed_position(away, time)); };
+  const Arm four = huynh_robot();
+  NewmarkRobot leaving(four, path, 1e-3);
+  LinearisedRobot leaving_fast([&](const JointVector& q) { return linear_arm(four, q); }, path, 1e-3);
+  for (const std::string& reason : {why_stopped([&] {
+                                      while (true) leaving.advance(kNothing, kNothing);
+                                    }),
+                                    why_stopped([&] {
+                                      while (true) leaving_fast.advance(kNothing, kNothing);
+                                    })}) {
+    EXPECT_EQ(reason.find("at 0."), 0U) << reason;
+    EXPECT_NE(reason.find("the arm is singular there, stretched"), std::string::npos) << reason;
+  }
   const Eigen::Vector3d nothing_known(NAN, 0, 0);
   EXPECT_NE(why_stopped([&] { robot.advance(kNothing, nothing_known); }), "");
   EXPECT_TRUE(robot.displacement().allFinite());
