@@ -16,11 +16,11 @@ namespace stillcut {
 namespace {
 
 constexpr int kMostReachSteps = 300;
-constexpr double kLargestTurn = 0.2;    // rad
-constexpr double kAtPlace = 1e-9;       // m
-constexpr double kStands = 1e-9;        // rad, a step that changes nothing any more
-constexpr double kPlaceDamping = 1e-6;  // squared, m^2: keeps a step finite where the arm is singular
-constexpr double kTurnDamping = 1e-4;   // squared, rad^2: turns that the joints hardly give are not forced
+constexpr double kLargestReachStep = 0.2;  // rad
+constexpr double kAtPlace = 1e-9;          // m
+constexpr double kStands = 1e-9;           // rad, a step that changes nothing any more
+constexpr double kPlaceDamping = 1e-6;     // squared, m^2: keeps a step finite where the arm is singular
+constexpr double kTurnDamping = 1e-4;      // squared, rad^2: turns that the joints hardly give are not forced
 constexpr double kSingularRatio = 1.0 / 200.0;
 
 using JointColumns = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostJoints, 3>;
@@ -64,7 +64,7 @@ JointVector reach(const Arm& arm, const Eigen::Vector3d& place) {
     // The place first; the turning with what the joints can do besides.
     const ToolJacobian moving = tool_jacobian(arm, pose), turning = turning_jacobian(arm, pose);
     const JointColumns inverse =
-        damped_inverse(moving, miss.norm() > kLargestTurn ? kPlaceDamping : 0.01 * kPlaceDamping);
+        damped_inverse(moving, miss.norm() > kLargestReachStep ? kPlaceDamping : 0.01 * kPlaceDamping);
     JointVector change = inverse * miss;
     const JointMatrix besides = JointMatrix::Identity(n, n) - inverse * moving;
     const ToolJacobian turning_besides = turning * besides;
@@ -78,7 +78,7 @@ JointVector reach(const Arm& arm, const Eigen::Vector3d& place) {
       if (!beyond.empty()) refuse_reach(place, beyond);
       return angles;
     }
-    angles += change * std::min(1.0, kLargestTurn / largest);
+    angles += change * std::min(1.0, kLargestReachStep / largest);
   }
   if (nearest <= 1e-6) refuse_reach(place, "the arm does not settle there; it is singular or near to it");
   std::array<char, 120> text{};

@@ -14,6 +14,7 @@ constexpr double kMostExcursion = 0.1;  // m: beyond it no robot is linear, nor 
 
 std::vector<Mode> modes_only(const std::vector<ArmMode>& modes) {
   std::vector<Mode> result;
+  result.reserve(modes.size());
   for (const ArmMode& mode : modes) result.push_back(mode.mode);
   return result;
 }
