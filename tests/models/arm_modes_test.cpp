@@ -14,6 +14,7 @@
 #include "models/receptance.hpp"
 #include "models/serial_arm.hpp"
 #include "models/symmetric_eigen.hpp"
+#include "tests/models/elastic_joint_robot.hpp"
 #include "tests/models/machining_arm.hpp"
 
 namespace stillcut {
@@ -47,6 +48,34 @@ TEST(ArmModes, SolveTheEigenproblemAndRise) {
       EXPECT_GT(w, before);
       before = w;
     }
+  }
+}
+
+// The robot that the dynamics map's tests shake, with its own equations and Eigen's solver.
+TEST(ArmModes, AgreeWithTheRobotOfTheMapsTests) {
+  const test::ElasticRobot robot = test::kuka();
+  Arm arm;
+  arm.gravity = 0.0;
+  arm.tool = robot.tool;
+  for (const test::RobotLink& link : robot.links) {
+    ArmJoint joint;
+    joint.origin = link.joint;
+    joint.axis = link.axis;
+    joint.mass = link.mass;
+    joint.centre = link.centre;
+    joint.inertia = link.inertia.asDiagonal();
+    joint.stiffness = link.stiffness;
+    joint.damping = link.damping;
+    arm.joints.push_back(joint);
+  }
+  test::JointAngles angles;
+  angles << 0.3, -1.1, 1.4, 0.2, 0.9, -0.4;
+  const std::vector<Mode> ours = tool_modes(linear_arm(arm, angles)), theirs = test::modes_at(robot, angles);
+  ASSERT_EQ(ours.size(), theirs.size());
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    EXPECT_NEAR(ours[i].natural_frequency, theirs[i].natural_frequency, 1e-9 * theirs[i].natural_frequency);
+    EXPECT_NEAR(ours[i].stiffness, theirs[i].stiffness, 1e-8 * theirs[i].stiffness);
+    EXPECT_NEAR(ours[i].damping_ratio, theirs[i].damping_ratio, 1e-9);
   }
 }
 
