@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
+
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
@@ -84,7 +85,7 @@ std::vector<UncertainCell> sample_cells(const Material& material, std::span<cons
 }
 
 double depth_quantile(std::vector<double> limits, double share) {
-  if (limits.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (limits.empty()) return kNaN;
   for (double& limit : limits) limit = std::isnan(limit) ? 0.0 : limit;
   std::sort(limits.begin(), limits.end());
   const double last = static_cast<double>(limits.size()) - 1.0;

@@ -2,6 +2,7 @@
 // (surface paper, eqs 16-18; docs/stability.md).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -16,6 +17,12 @@ struct Mode {
   double stiffness = 0.0;                    // N/m
   std::array<double, 3> direction{1, 0, 0};  // unit vector, workpiece axes
 };
+
+// Into rising frequency.
+inline void sort_modes(std::vector<Mode>& modes) {
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+}
 
 struct Posture {
   std::string id;

@@ -13,12 +13,6 @@
 namespace stillcut {
 namespace {
 
-double cosine(const Mode& a, const Mode& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) sum += a.direction[i] * b.direction[i];
-  return sum;
-}
-
 Mode normalised(Mode mode) {
   const double length = std::hypot(mode.direction[0], mode.direction[1], mode.direction[2]);
   for (double& component : mode.direction) component /= length;
@@ -44,7 +38,7 @@ void extend_tracks(std::vector<ModeTrack>& tracks, std::size_t parent, std::size
       continue;
     }
     const std::size_t t = track_of[*pairs[m]];
-    if (cosine(*tracks[t][parent], mode) < 0.0) {
+    if (direction_cosine(*tracks[t][parent], mode) < 0.0) {
       for (double& component : mode.direction) component = -component;
     }
     tracks[t][posture] = mode;
@@ -128,8 +122,7 @@ std::vector<Mode> modes_on_tracks(const DynamicsMap& map, std::span<const double
   }
   if (modes.empty())
     throw std::invalid_argument("dynamics map: its postures have no mode in common; use interpolation \"frf\"");
-  std::stable_sort(modes.begin(), modes.end(),
-                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+  sort_modes(modes);
   return modes;
 }
 
@@ -198,18 +191,18 @@ PredictedPosture predict_posture(const DynamicsMap& map, const Posture& query, c
   result.outside = map.postures.size() > 1 && result.nearest_distance > result.map_spacing;
   if (result.nearest_distance == 0.0) {
     result.posture.modes = neighbour.modes;
-  } else if (!interpolation.modal) {
+    sort_modes(result.posture.modes);
+  } else if (interpolation.kind == InterpolationKind::frf) {
     result.posture.modes = superposed(map, weights);
+    sort_modes(result.posture.modes);
     result.superposed = true;
-  } else if (interpolation.trend) {
+  } else if (interpolation.kind == InterpolationKind::trend) {
     result.posture.modes = modes_on_tracks(map, weights, scale, [&](const ModeTrack& track, double) {
       return trend_mode(map, query, track, weights, scale);
     });
   } else {
     result.posture.modes = average_modes(map, weights, scale);
   }
-  std::stable_sort(result.posture.modes.begin(), result.posture.modes.end(),
-                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
   return result;
 }
 

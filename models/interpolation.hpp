@@ -1,7 +1,7 @@
 // Modes between measured postures, by inverse distance weighting (surface paper, eqs 16-18). Two ways: `frf` weights
 // the frequency responses themselves, as the paper does, which superposes the modes of all postures; `modal` weights
-// matched modal parameters and keeps the number of modes. `trend` is modal too, with weights that follow the slope of
-// the map instead of leaning toward its mean.
+// matched modal parameters and keeps the number of modes. `trend` is modal too, with weights that
+// reproduce a plane through the map (models/posture_trend) instead of leaning toward its mean.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "models/interpolation_kind.hpp"
 #include "models/posture.hpp"
 
 namespace stillcut {
 
 struct Interpolation {
-  bool modal = true;  // false: frf
+  InterpolationKind kind = InterpolationKind::modal;
   double power = 1.0;
-  bool trend = false;  // with modal: weights reproduce a plane through the map (models/posture_trend)
   JointScale joint_scale = kEqualJoints;
 };
 

@@ -17,16 +17,35 @@ constexpr double kAnotherMode = 0.5;  // half an octave, or half a right angle's
 double relative(double predicted, double measured) { return predicted / measured - 1.0; }
 double peak_of(const Mode& mode) { return 1.0 / (2.0 * mode.stiffness * mode.damping_ratio); }
 
+// The interpolation that a way is; nothing for the mean.
+std::optional<InterpolationKind> kind_of(MapMethod method) {
+  switch (method) {
+    case MapMethod::frf:
+      return InterpolationKind::frf;
+    case MapMethod::modal:
+      return InterpolationKind::modal;
+    case MapMethod::trend:
+      return InterpolationKind::trend;
+    case MapMethod::mean:
+      break;
+  }
+  return std::nullopt;
+}
+
+MapMethod method_of(InterpolationKind kind) {
+  return *std::find_if(kMapMethods.begin(), kMapMethods.end(),
+                       [&](MapMethod method) { return kind_of(method) == kind; });
+}
+
 // The modes of the response that a way predicts; empty where the others have no mode in common.
 std::vector<Mode> predicted_modes(const DynamicsMap& others, const Posture& left_out, MapMethod method,
                                   Interpolation interpolation) {
   try {
-    if (method == MapMethod::mean) {
+    if (!kind_of(method)) {
       const std::vector<double> equal(others.postures.size(), 1.0 / static_cast<double>(others.postures.size()));
       return average_modes(others, equal, interpolation.joint_scale);
     }
-    interpolation.modal = method != MapMethod::frf;
-    interpolation.trend = method == MapMethod::trend;
+    interpolation.kind = *kind_of(method);
     return predict_posture(others, left_out, interpolation).posture.modes;
   } catch (const std::invalid_argument&) {
     return {};
@@ -136,8 +155,8 @@ MapMethod best_of(const LeaveOneOut& report) {
 }  // namespace
 
 const char* name_of(MapMethod method) {
-  constexpr std::array kNames{"mean", "frf", "modal", "trend"};
-  return kNames[static_cast<std::size_t>(method)];
+  const auto kind = kind_of(method);
+  return kind ? kInterpolationNames[static_cast<std::size_t>(*kind)] : "mean";
 }
 
 LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpolation,
@@ -153,12 +172,12 @@ LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpola
     if (progress) progress(static_cast<double>(left) / static_cast<double>(map.postures.size()));
     const DynamicsMap others = without(map, left);
     Posture measured = map.postures[left];
-    std::stable_sort(measured.modes.begin(), measured.modes.end(),
-                     [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+    sort_modes(measured.modes);
     const std::vector<ReceptancePeak> peaks = receptance_peaks(measured.modes);
     // The superposition never lacks a mode, so it can tell the distances in every map.
     const PredictedPosture superposed = predict_posture(
-        others, measured, {.modal = false, .power = interpolation.power, .joint_scale = interpolation.joint_scale});
+        others, measured,
+        {.kind = InterpolationKind::frf, .power = interpolation.power, .joint_scale = interpolation.joint_scale});
     LeftOutPosture& posture = report.postures.emplace_back();
     posture.id = measured.id;
     posture.nearest = superposed.nearest;
@@ -180,9 +199,7 @@ std::optional<ModalScatter> left_out_scatter(const DynamicsMap& map, const Inter
   constexpr int kFew = 4;  // errors from which no scatter can be told
   check_map(map);
   if (map.postures.size() < 2) return std::nullopt;
-  const MapMethod method = !interpolation.modal  ? MapMethod::frf
-                           : interpolation.trend ? MapMethod::trend
-                                                 : MapMethod::modal;
+  const MapMethod method = method_of(interpolation.kind);
   ModalScatter squares{0.0, 0.0, 0.0};
   int count = 0;
   for (std::size_t left = 0; left < map.postures.size(); ++left) {

@@ -4,11 +4,11 @@
 
 #include <array>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dsp/numbers.hpp"
 #include "models/confidence.hpp"
 #include "models/interpolation.hpp"
 
@@ -26,7 +26,7 @@ const char* name_of(MapMethod method);
 struct ModePrediction {
   Mode measured;
   std::optional<Mode> predicted;  // paired by models/mode_pairs
-  double frequency_error = std::numeric_limits<double>::quiet_NaN(), damping_error = frequency_error;
+  double frequency_error = kNaN, damping_error = frequency_error;
   double peak_error = frequency_error;  // of the mode's own peak receptance, 1/(2 k zeta)
 };
 

@@ -44,8 +44,7 @@ void summarise_modes(std::span<const Mode> modes, LobeDiagram& diagram) {
   std::stable_sort(chosen.begin(), chosen.end(),
                    [&](const Mode& a, const Mode& b) { return peak_compliance(a) > peak_compliance(b); });
   chosen.resize(std::min<std::size_t>(chosen.size(), LobeDiagram::kMaxModes));
-  std::stable_sort(chosen.begin(), chosen.end(),
-                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+  sort_modes(chosen);
   diagram.mode_count = static_cast<int>(chosen.size());
   std::transform(chosen.begin(), chosen.end(), diagram.modes.begin(), [](const Mode& mode) {
     return ModeSummary{mode.natural_frequency / kTwoPi, mode.damping_ratio};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 namespace stillcut {
 namespace {
@@ -12,9 +13,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kSamplesPerPeriod = 20.0;      // of the highest mode: what may be asked for
 constexpr double kStepsPerPeriod = 60.0;        // of the highest mode: what the integrator takes at least
 constexpr double kLargestTurn = 0.0175;         // rad a step: one degree of tooth motion resolves entry and exit
-constexpr double kLargestLag = 0.035;           // rad between neighbouring heights of a helical edge
+constexpr double kBinsPerStep = 3.0;            // at the slowest speed
 constexpr double kForceCorrelationTime = 1e-4;  // s: chip formation varies up to some kHz
-constexpr double kLowestSpeedRatio = 0.02;      // of the highest speed in the schedule: bounds the surface memory
+constexpr double kLowestSpeedRatio = 0.02;      // of the highest speed: bounds the surface memory
+constexpr double kLostAt = 0.5;                 // m off the path: no machine is there any more
 
 double highest_frequency_hz(const std::vector<Mode>& modes) {
   double highest = 0.0;
@@ -22,36 +24,20 @@ double highest_frequency_hz(const std::vector<Mode>& modes) {
   return highest;
 }
 
-std::pair<double, double> value_range(const Schedule& schedule) {
-  const auto by_value = [](const SchedulePoint& a, const SchedulePoint& b) { return a.value < b.value; };
-  const auto [low, high] = std::minmax_element(schedule.begin(), schedule.end(), by_value);
-  return {low->value, high->value};
-}
-
-void check(const Schedule& schedule, const char* what) {
-  for (std::size_t i = 0; i < schedule.size(); ++i) {
-    if (!std::isfinite(schedule[i].time) || !std::isfinite(schedule[i].value))
-      throw std::invalid_argument(std::string(what) + ": times and values must be finite numbers");
-    if (i > 0 && schedule[i].time < schedule[i - 1].time)
-      throw std::invalid_argument(std::string(what) + ": times must not go back");
-  }
-}
-
 // Fills in what the setup leaves to the cut and refuses what cannot be simulated.
 MillingSetup completed(MillingSetup setup) {
-  if (setup.axial_depth.empty()) setup.axial_depth = {{0.0, setup.cut.axial_depth}};
-  if (setup.spindle_speed.empty()) setup.spindle_speed = {{0.0, setup.cut.spindle_speed}};
-  check(setup.axial_depth, "axial depth");
-  check(setup.spindle_speed, "spindle speed");
   const Tool& tool = setup.tool;
-  if (tool.shape != ToolShape::end) throw std::invalid_argument("only end mills can be simulated in time");
   if (tool.teeth < 1 || tool.pitch.size() != static_cast<std::size_t>(tool.teeth) || !(tool.diameter > 0.0))
     throw std::invalid_argument("a tool needs a diameter, at least one tooth and one pitch angle a tooth");
-  if (value_range(setup.axial_depth).first < 0.0) throw std::invalid_argument("axial depth: must not be negative");
-  const auto [slowest, fastest] = value_range(setup.spindle_speed);
-  if (!(slowest > 0.0) || slowest < kLowestSpeedRatio * fastest)
-    throw std::invalid_argument("spindle speed: must stay above 2 % of its highest value");
   if (setup.modes.empty()) throw std::invalid_argument("a simulation needs at least one mode");
+  const double speed = setup.cut.spindle_speed;
+  setup.deepest = std::max(setup.deepest, setup.cut.axial_depth);
+  setup.slowest = setup.slowest > 0.0 ? std::min(setup.slowest, speed) : speed;
+  setup.fastest = std::max(setup.fastest, speed);
+  if (!std::isfinite(setup.fastest) || !(setup.slowest > 0.0) || setup.slowest < kLowestSpeedRatio * setup.fastest)
+    throw std::invalid_argument("spindle speed: must stay above 2 % of its highest value");
+  if (!(setup.deepest > 0.0 && std::isfinite(setup.deepest)))
+    throw std::invalid_argument("axial depth: must be a positive number");
   return setup;
 }
 
@@ -62,165 +48,217 @@ double wrapped(double angle) {  // to [-pi/2, 3 pi/2): the cut, 0..pi, lies insi
 int steps_per_sample(const MillingSetup& setup, double sample_rate_hz) {
   if (!(sample_rate_hz >= lowest_sample_rate_hz(setup.modes)))
     throw std::invalid_argument("sample rate: at least 20 samples a period of the highest mode are needed");
-  const double fastest = value_range(setup.spindle_speed).second;
-  const double needed_hz = std::max(kStepsPerPeriod * highest_frequency_hz(setup.modes), fastest / kLargestTurn);
+  const double needed_hz = std::max(kStepsPerPeriod * highest_frequency_hz(setup.modes), setup.fastest / kLargestTurn);
   return static_cast<int>(std::ceil(needed_hz / sample_rate_hz));
+}
+
+// An edge is divided for the deepest cut, and finely enough for the one that the setup begins with.
+int element_count(const MillingSetup& setup) {
+  const int count = edge_element_count(setup.tool, setup.deepest);
+  const double depth = setup.cut.axial_depth;
+  if (!(depth > 0.0)) return count;
+  const double fewest = edge_element_count(setup.tool, depth) / profile_length(setup.tool, depth);
+  return std::max(count,
+                  static_cast<int>(std::ceil(fewest * profile_length(setup.tool, setup.deepest) * (1.0 - 1e-9))));
+}
+
+MillingConditions between(const MillingConditions& from, const MillingConditions& to, double part) {
+  MillingConditions result = to;
+  result.axial_depth = std::lerp(from.axial_depth, to.axial_depth, part);
+  result.feed_per_tooth = std::lerp(from.feed_per_tooth, to.feed_per_tooth, part);
+  result.spindle_speed = std::lerp(from.spindle_speed, to.spindle_speed, part);
+  result.feed_direction = std::lerp(from.feed_direction, to.feed_direction, part);
+  return result;
 }
 
 }  // namespace
 
 double lowest_sample_rate_hz(const std::vector<Mode>& modes) { return kSamplesPerPeriod * highest_frequency_hz(modes); }
 
+MillingConditions milling_conditions(const Cut& cut) {
+  return {cut.milling, cut.radial_depth, cut.axial_depth, cut.feed_per_tooth, cut.spindle_speed, cut.feed_direction};
+}
+
 MillingSimulation::MillingSimulation(MillingSetup setup, double sample_rate_hz)
     : setup_{completed(std::move(setup))},
-      immersion_{immersion(setup_.cut.milling, setup_.cut.radial_depth, setup_.tool.diameter)},
+      conditions_{milling_conditions(setup_.cut)},
+      immersion_{immersion(conditions_.milling, conditions_.radial_depth, setup_.tool.diameter)},
       sample_step_{1.0 / sample_rate_hz},
       step_{sample_step_ / steps_per_sample(setup_, sample_rate_hz)},
       steps_per_sample_{steps_per_sample(setup_, sample_rate_hz)},
-      structure_{setup_.modes, step_},
+      structure_{setup_.structure ? setup_.structure(step_) : std::make_unique<ModalStructure>(setup_.modes, step_)},
       random_{setup_.seed} {
+  check(conditions_);
   const Tool& tool = setup_.tool;
-  const double c = std::cos(setup_.cut.feed_direction), s = std::sin(setup_.cut.feed_direction);
-  feed_ = {c, s, 0.0};
-  cross_feed_ = {-s, c, 0.0};
   for (double angle = 0.0; const double pitch : tool.pitch) {
     tooth_angle_.push_back(angle);
     tooth_runout_.push_back(tool.runout * std::cos(angle - tool.runout_angle));
+    tooth_axial_runout_.push_back(tool.axial_runout * std::cos(angle - tool.runout_angle));
     angle += pitch;
   }
-  const double deepest = value_range(setup_.axial_depth).second;
-  const double lag = 2.0 * deepest * std::tan(tool.helix) / tool.diameter;
-  slices_ = std::max(1, static_cast<int>(std::ceil(std::abs(lag) / kLargestLag)));
-  // Bins narrower than the smallest turn of a step: a tooth then never reads what it has itself just written.
-  bins_ = static_cast<std::size_t>(std::ceil(2.0 * kTwoPi / (value_range(setup_.spindle_speed).first * step_)));
-  surface_.assign(static_cast<std::size_t>(slices_) * bins_, 0.0);
-
-  structure_.strike(setup_.impulse);
-  speed_ = value_at(setup_.spindle_speed, 0.0);
-  state_.spindle_speed = speed_;
-  state_.axial_depth = value_at(setup_.axial_depth, 0.0);
-  state_.velocity = structure_.velocity();
-  const Geometry start{0.0, speed_ * step_, state_.axial_depth, speed_, 0.0};
-  for (int slice = 0; slice < slices_; ++slice)
-    for (int tooth = 0; tooth < tool.teeth; ++tooth) edges_.push_back({edge_angle(start, slice, tooth), 0.0});
-}
-
-double MillingSimulation::edge_angle(const Geometry& at, int slice, int tooth) const {
-  const double height = (slice + 0.5) / slices_ * at.depth;
-  const double lag = 2.0 * height * std::tan(setup_.tool.helix) / setup_.tool.diameter;
-  return at.angle + tooth_angle_[static_cast<std::size_t>(tooth)] - lag;
-}
-
-// Radius that the edge reaches, about the ideal tool centre's path and less the nominal radius: its runout, the feed
-// travelled and the vibration, all projected on the edge's own direction (circular tooth path).
-double MillingSimulation::edge_radius(double angle, int tooth, double travel,
-                                      const Eigen::Vector3d& displacement) const {
-  const double s = std::sin(angle), c = std::cos(angle);
-  return tooth_runout_[static_cast<std::size_t>(tooth)] + s * (travel + feed_.dot(displacement)) +
-         c * cross_feed_.dot(displacement);
-}
-
-double MillingSimulation::surface_at(int slice, double angle) const {
-  const double position = (angle / kTwoPi - std::floor(angle / kTwoPi)) * static_cast<double>(bins_);
-  const auto low = std::min(static_cast<std::size_t>(position), bins_ - 1);
-  const double part = position - static_cast<double>(low);
-  const double* row = &surface_[static_cast<std::size_t>(slice) * bins_];
-  return (1.0 - part) * row[low] + part * row[(low + 1) % bins_];
-}
-
-MillingSimulation::Load MillingSimulation::load_at(const Geometry& at, const Eigen::Vector3d& displacement,
-                                                   const Eigen::Vector3d& velocity) const {
-  Load load{Eigen::Vector3d::Zero(), 0.0};
-  if (!(at.depth > 0.0)) return load;
-  const Material& m = setup_.material;
-  const double width = at.depth / slices_, cutting_speed = at.speed * 0.5 * setup_.tool.diameter;
-  for (int slice = 0; slice < slices_; ++slice) {
-    for (int tooth = 0; tooth < setup_.tool.teeth; ++tooth) {
-      const double angle = edge_angle(at, slice, tooth), phi = wrapped(angle);
-      // The share of this step's turn that lies in the part: entry and exit then fall between steps where they belong.
-      const double inside =
-          (std::min(phi + 0.5 * at.swept, immersion_.exit) - std::max(phi - 0.5 * at.swept, immersion_.entry)) /
-          at.swept;
-      if (!(inside > 0.0)) continue;
-      const double chip = edge_radius(angle, tooth, at.travel, displacement) - surface_at(slice, angle);
-      if (!(chip > 0.0)) continue;  // out of contact: the tooth does not reach the surface
-      const double s = std::sin(phi), c = std::cos(phi), b = width * std::min(inside, 1.0);
-      const double outward = s * feed_.dot(velocity) + c * cross_feed_.dot(velocity);
-      const double tangential = (m.ktc * chip + m.kte) * b;
-      const double radial = (m.krc * chip + m.kre + m.process_damping * outward / cutting_speed) * b;
-      const double axial = (m.kac * chip + m.kae) * b;
-      load.force += feed_ * (-tangential * c - radial * s) + cross_feed_ * (tangential * s - radial * c);
-      load.force.z() -= axial;
-      load.chip = std::max(load.chip, chip);
-    }
+  const auto bins = static_cast<std::size_t>(std::ceil(kBinsPerStep * kTwoPi / (setup_.slowest * step_)));
+  for (std::size_t i = 0; i < bins; ++i) {
+    const double angle = kTwoPi * static_cast<double>(i) / static_cast<double>(bins);
+    bin_normal_.emplace_back(std::sin(angle), std::cos(angle));
   }
+  const int count = element_count(setup_);
+  elements_ = edge_elements(tool, setup_.deepest, count);
+  piece_length_ = profile_length(tool, setup_.deepest) / count;
+  surface_.assign(elements_.size() * bins, 0.0);
+
+  spindle_angle_ = -conditions_.feed_direction;
+  const double bin_angle = kTwoPi / static_cast<double>(bins);
+  for (const EdgeElement& element : elements_)
+    for (const double tooth : tooth_angle_)
+      last_bin_.push_back(static_cast<std::int64_t>(std::floor((spindle_angle_ + tooth - element.lag) / bin_angle)));
+  state_.spindle_speed = conditions_.spindle_speed;
+  state_.axial_depth = conditions_.axial_depth;
+}
+
+void MillingSimulation::check(const MillingConditions& c) const {
+  if (!(c.axial_depth >= 0.0 && c.axial_depth <= setup_.deepest))
+    throw std::invalid_argument("axial depth: must lie between 0 and the deepest of the setup");
+  if (!(c.spindle_speed >= setup_.slowest && c.spindle_speed <= setup_.fastest))
+    throw std::invalid_argument("spindle speed: must lie between the slowest and the fastest of the setup");
+  if (!(c.feed_per_tooth >= 0.0) || !std::isfinite(c.feed_per_tooth) || !std::isfinite(c.feed_direction))
+    throw std::invalid_argument("feed: per tooth must be a number from 0 up, its direction a number");
+  if (c.axial_depth > 0.0) (void)immersion(c.milling, c.radial_depth, setup_.tool.diameter);
+}
+
+// How much of an element stands in the part: the depth of cut may end within it.
+double MillingSimulation::engaged_share(std::size_t element) const {
+  return std::clamp(engaged_ / piece_length_ - static_cast<double>(element), 0.0, 1.0);
+}
+
+// The part of a step in which a tooth is engaged, and the force that the chip there exerts, as a mean over the step:
+// entry and exit then fall between steps where they belong. The surface is compared bin by bin before it is
+// interpolated, so that the tool's travel, the same in both, drops out.
+void MillingSimulation::add_load(const Step& step, std::size_t tooth, std::size_t element, Load& load) const {
+  const EdgeElement& edge = elements_[element];
+  const double to_feed_frame = step.feed_direction, half = 0.5 * step.swept;
+  const double centre = step.begin_angle + half + tooth_angle_[tooth] - edge.lag;
+  const double phi = wrapped(centre + to_feed_frame);
+  const double engaged_from = std::max(phi - half, immersion_.entry),
+               engaged_to = std::min(phi + half, immersion_.exit);
+  if (!(engaged_to > engaged_from)) return;
+  const double off_centre = 0.5 * (engaged_from + engaged_to) - phi;
+  const Eigen::Vector3d point = step.begin + (0.5 + off_centre / step.swept) * (step.end - step.begin);
+
+  const auto bins = static_cast<double>(bin_normal_.size());
+  double position = (centre + off_centre) / kTwoPi;
+  position = (position - std::floor(position)) * bins;
+  const std::size_t low = std::min(static_cast<std::size_t>(position), bin_normal_.size() - 1);
+  const std::size_t high = low + 1 == bin_normal_.size() ? 0 : low + 1;
+  const double part = position - static_cast<double>(low);
+  const double axial_reach =
+      tooth_runout_[tooth] * edge.sin_kappa - (tooth_axial_runout_[tooth] + point.z()) * edge.cos_kappa;
+  const double* surface = &surface_[element * bin_normal_.size()];
+  const auto chip_at = [&](std::size_t bin) {
+    return edge.sin_kappa * bin_normal_[bin].dot(point.head<2>()) + axial_reach - surface[bin];
+  };
+  const double chip = std::lerp(chip_at(low), chip_at(high), part);
+  if (!(chip > 0.0)) return;  // out of contact: the tooth does not reach the surface
+
+  const Material& m = setup_.material;
+  const Eigen::Vector2d outward = (1.0 - part) * bin_normal_[low] + part * bin_normal_[high];
+  const double s = outward.x(), c = outward.y(),
+               share = engaged_share(element) * (engaged_to - engaged_from) / step.swept;
+  const Eigen::Vector3d normal(s * edge.sin_kappa, c * edge.sin_kappa, -edge.cos_kappa);
+  const Eigen::Vector3d along_profile(s * edge.cos_kappa, c * edge.cos_kappa, edge.sin_kappa);
+  const double rubbing = m.process_damping * normal.dot(step.velocity) / step.cutting_speed;
+  const double tangential = m.ktc * chip * edge.chip_width + m.kte * edge.edge_length;
+  const double radial = (m.krc * chip + rubbing) * edge.chip_width + m.kre * edge.edge_length;
+  const double axial = m.kac * chip * edge.chip_width + m.kae * edge.edge_length;
+  load.force -=
+      share * (Eigen::Vector3d(tangential * c, -tangential * s, 0.0) + radial * normal + axial * along_profile);
+  load.chip = std::max(load.chip, chip);
+}
+
+MillingSimulation::Load MillingSimulation::load_in(const Step& step) const {
+  Load load;
+  for (std::size_t element = 0; element < elements_.size() && engaged_share(element) > 0.0; ++element)
+    for (std::size_t tooth = 0; tooth < tooth_angle_.size(); ++tooth) add_load(step, tooth, element, load);
   return load;
 }
 
 // Each edge takes away what stands inside its path since the last step; outside the cut there is no part, and the path
 // itself is kept as what the next tooth would meet.
-void MillingSimulation::cut_surface(const Geometry& at, const Eigen::Vector3d& displacement) {
-  const double bin_angle = kTwoPi / static_cast<double>(bins_);
-  for (int slice = 0; slice < slices_; ++slice) {
-    double* row = &surface_[static_cast<std::size_t>(slice) * bins_];
-    for (int tooth = 0; tooth < setup_.tool.teeth; ++tooth) {
-      Edge& last = edges_[static_cast<std::size_t>(slice * setup_.tool.teeth + tooth)];
-      const Edge now{edge_angle(at, slice, tooth),
-                     edge_radius(edge_angle(at, slice, tooth), tooth, at.travel, displacement)};
-      const auto first = static_cast<std::int64_t>(std::floor(last.angle / bin_angle)) + 1;
-      const auto end = static_cast<std::int64_t>(std::floor(now.angle / bin_angle));
-      for (std::int64_t i = first; i <= end; ++i) {
-        const double angle = static_cast<double>(i) * bin_angle;
-        const double radius = std::lerp(last.radius, now.radius, (angle - last.angle) / (now.angle - last.angle));
-        const auto count = static_cast<std::int64_t>(bins_);
-        double& surface = row[((i % count) + count) % count];
-        const double phi = wrapped(angle);
-        const bool in_part = at.depth > 0.0 && phi >= immersion_.entry && phi <= immersion_.exit;
-        surface = in_part ? std::max(surface, radius) : radius;
+void MillingSimulation::cut_surface(const Step& step) {
+  const auto bins = static_cast<std::int64_t>(bin_normal_.size());
+  const double bin_angle = kTwoPi / static_cast<double>(bins);
+  const Eigen::Vector3d moved = step.end - step.begin;
+  for (std::size_t element = 0; element < elements_.size(); ++element) {
+    const EdgeElement& edge = elements_[element];
+    const bool in_cut = engaged_share(element) > 0.0;
+    double* row = &surface_[element * static_cast<std::size_t>(bins)];
+    for (std::size_t tooth = 0; tooth < tooth_angle_.size(); ++tooth) {
+      const double begin = step.begin_angle + tooth_angle_[tooth] - edge.lag;
+      const auto last = static_cast<std::int64_t>(std::floor((begin + step.swept) / bin_angle));
+      std::int64_t& passed = last_bin_[element * tooth_angle_.size() + tooth];
+      for (; passed < last; ++passed) {
+        const double angle = static_cast<double>(passed + 1) * bin_angle;
+        const auto bin = static_cast<std::size_t>(((passed + 1) % bins + bins) % bins);
+        const Eigen::Vector3d point = step.begin + (angle - begin) / step.swept * moved;
+        const double reach = edge.sin_kappa * (bin_normal_[bin].dot(point.head<2>()) + tooth_runout_[tooth]) -
+                             edge.cos_kappa * (point.z() + tooth_axial_runout_[tooth]);
+        const double phi = wrapped(angle + step.feed_direction);
+        const bool in_part = in_cut && phi >= immersion_.entry && phi <= immersion_.exit;
+        row[bin] = in_part ? std::max(row[bin], reach) : reach;
       }
-      last = now;
     }
   }
 }
 
-// Predict the displacement with the force held, take the force there, correct with the force along a line (second
-// order).
-void MillingSimulation::step() {
-  const double time = static_cast<double>(++step_count_) * step_;
-  const double speed = value_at(setup_.spindle_speed, time);
-  const double swept = 0.5 * (speed_ + speed) * step_;
-  spindle_angle_ += swept;
-  speed_ = speed;
-  const double travel = setup_.cut.feed_per_tooth * setup_.tool.teeth * spindle_angle_ / kTwoPi;
-  const Geometry at{spindle_angle_, swept, value_at(setup_.axial_depth, time), speed, travel};
+// The displacement is predicted with the last force held; the force there, a mean over the step, then moves the
+// structure, and where it really went is cut (second order).
+void MillingSimulation::step(const MillingConditions& now) {
+  engaged_ = profile_length(setup_.tool, now.axial_depth);
+  const double swept = 0.5 * (state_.spindle_speed + now.spindle_speed) * step_;
+  const double advanced = now.feed_per_tooth * setup_.tool.teeth * swept / kTwoPi;
+  const Eigen::Vector3d travel =
+      travel_ + advanced * Eigen::Vector3d(std::cos(now.feed_direction), std::sin(now.feed_direction), 0.0);
+  const Eigen::Vector3d before = state_.displacement;
+  const Eigen::Vector3d predicted = structure_->displacement_after(state_.force, state_.force);
+  Step step{spindle_angle_,
+            swept,
+            now.feed_direction,
+            now.spindle_speed * 0.5 * setup_.tool.diameter,
+            travel_ + before,
+            travel + predicted,
+            (predicted - before) / step_};
 
   if (setup_.force_noise > 0.0) {
     const double kept = std::exp(-step_ / kForceCorrelationTime);
     std::normal_distribution<double> normal;
     force_variation_ = kept * force_variation_ + setup_.force_noise * std::sqrt(1.0 - kept * kept) * normal(random_);
   }
-  const double scale = 1.0 + force_variation_;
-  const Eigen::Vector3d begin = state_.force;
-  const Eigen::Vector3d predicted =
-      scale * load_at(at, structure_.displacement_after(begin, begin), state_.velocity).force;
-  structure_.advance(begin, predicted);
-  const Eigen::Vector3d displacement = structure_.displacement(), velocity = structure_.velocity();
-  const Load load = load_at(at, displacement, velocity);
-  cut_surface(at, displacement);
-  state_ = {.time = time,
-            .force = scale * load.force,
-            .displacement = displacement,
-            .velocity = velocity,
-            .acceleration = structure_.acceleration(),
-            .chip = load.chip,
-            .spindle_speed = speed,
-            .axial_depth = at.depth};
+  const Load load = load_in(step);
+  state_.force = (1.0 + force_variation_) * load.force;
+  state_.chip = load.chip;
+  structure_->advance(state_.force, state_.force);
+  state_.displacement = structure_->displacement();
+  step.end = travel + state_.displacement;
+  cut_surface(step);
+  travel_ = travel;
+  spindle_angle_ += swept;
+  state_.spindle_speed = now.spindle_speed;
 }
 
-const MillingState& MillingSimulation::advance() {
-  for (int i = 0; i < steps_per_sample_; ++i) step();
-  const std::int64_t sample = step_count_ / steps_per_sample_;
-  state_.time = static_cast<double>(sample) * sample_step_;  // free of the steps' rounding
+const MillingState& MillingSimulation::advance(const MillingConditions& conditions) {
+  check(conditions);
+  if (conditions.axial_depth > 0.0)
+    immersion_ = immersion(conditions.milling, conditions.radial_depth, setup_.tool.diameter);
+  for (int i = 1; i <= steps_per_sample_; ++i)
+    step(between(conditions_, conditions, static_cast<double>(i) / steps_per_sample_));
+  conditions_ = conditions;
+  state_.time = static_cast<double>(++sample_count_) * sample_step_;
+  state_.velocity = structure_->velocity();
+  state_.acceleration = structure_->acceleration();
+  state_.spindle_angle = spindle_angle_ + setup_.cut.feed_direction;
+  state_.axial_depth = conditions.axial_depth;
+  if (!(state_.displacement.norm() < kLostAt))
+    throw std::runtime_error("at " + std::to_string(state_.time) + " s the tool point is more than " +
+                             std::to_string(kLostAt).substr(0, 3) + " m off its path: the motion grows without bound");
   return state_;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "models/modal_polish.hpp"
+#include "models/mode_pairs.hpp"
 #include "models/receptance.hpp"
 #include "models/receptance_peaks.hpp"
 
@@ -19,10 +20,6 @@ using Eigen::Vector3d;
 constexpr double kSame = 1e-9;      // relative: two modes no farther apart than this are copies
 constexpr double kFitPoints = 2.0;  // to a half-width, for the polish
 constexpr std::size_t kMostFitPoints = 1500;
-
-double direction_cosine(const Mode& a, const Mode& b) {
-  return Vector3d(a.direction.data()).dot(Vector3d(b.direction.data()));
-}
 
 bool copies(const Mode& a, const Mode& b) {
   return std::abs(a.natural_frequency - b.natural_frequency) <= kSame * a.natural_frequency &&
@@ -159,8 +156,7 @@ ModalRefit refit_modes(std::span<const Mode> modes, std::size_t most) {
   ModalRefit result;
   result.modes = without_copies(modes);
   if (result.modes.size() > most) result.modes = polished(join_down_to(std::move(result.modes), most), modes);
-  std::stable_sort(result.modes.begin(), result.modes.end(),
-                   [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+  sort_modes(result.modes);
   result.error = receptance_error(result.modes, modes);
   return result;
 }

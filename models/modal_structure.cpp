@@ -25,6 +25,17 @@ ModalStructure::ModalStructure(std::span<const Mode> modes, double step) : step_
   }
 }
 
+void ModalStructure::set_modes(std::span<const Mode> modes) {
+  if (modes.size() != modes_.size()) throw std::invalid_argument("a structure keeps its number of modes");
+  ModalStructure other(modes, step_);
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    other.modes_[i].q = modes_[i].q;
+    other.modes_[i].v = modes_[i].v;
+    other.modes_[i].drive = modes_[i].drive * modes_[i].mass / other.modes_[i].mass;  // the same force
+  }
+  modes_ = std::move(other.modes_);
+}
+
 void ModalStructure::strike(const Eigen::Vector3d& impulse) {
   for (Oscillator& mode : modes_) mode.v += mode.direction.dot(impulse) / mode.mass;
 }

@@ -24,6 +24,10 @@ class ModalStructure final : public Structure {
   // a direction of length > 0 (it is normalised).
   ModalStructure(std::span<const Mode> modes, double step);
 
+  // The same modes as they are at another posture: each keeps its displacement and velocity. Throws
+  // std::invalid_argument where their number differs, or as the constructor does.
+  void set_modes(std::span<const Mode> modes);
+
   // The force's displacement is exact here.
   [[nodiscard]] Eigen::Vector3d displacement_after(const Eigen::Vector3d& begin,
                                                    const Eigen::Vector3d& end) const override;

@@ -6,10 +6,15 @@
 
 namespace stillcut {
 
+double direction_cosine(const Mode& a, const Mode& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) sum += a.direction[i] * b.direction[i];
+  return sum;
+}
+
 double mode_difference(const Mode& a, const Mode& b) {
-  double cosine = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) cosine += a.direction[i] * b.direction[i];
-  return std::abs(std::log2(a.natural_frequency / b.natural_frequency)) + 1.0 - std::min(1.0, std::abs(cosine));
+  return std::abs(std::log2(a.natural_frequency / b.natural_frequency)) + 1.0 -
+         std::min(1.0, std::abs(direction_cosine(a, b)));
 }
 
 std::vector<std::optional<std::size_t>> pair_modes(std::span<const Mode> of, std::span<const Mode> in) {

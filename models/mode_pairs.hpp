@@ -10,6 +10,9 @@
 
 namespace stillcut {
 
+// Cosine of the angle between the directions of two modes.
+double direction_cosine(const Mode& a, const Mode& b);
+
 // Without unit: 0 for equal modes; an octave apart counts as much as a right angle between the directions, whose sign
 // does not matter.
 double mode_difference(const Mode& a, const Mode& b);

@@ -8,7 +8,7 @@
 #include "drivers/can/dbc.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/files/dynamics_map_file.hpp"
-#include "models/milling_simulation.hpp"
+#include "models/cut_schedule.hpp"
 #include "models/posture.hpp"
 #include "tools/can_encoder.hpp"
 
@@ -23,15 +23,16 @@ inline std::vector<CanFrame> simulate_cut(const Cell& cell, const Schedule& axia
   setup.material = *cell.material;
   setup.cut = *cell.cut;
   setup.modes = find_posture(read_dynamics_map(cell.dynamics->map), cell.dynamics->posture).modes;
-  setup.axial_depth = axial_depth;
   setup.force_noise = 0.02;
   setup.seed = seed;
   const double rate_hz = std::max(lowest_sample_rate_hz(setup.modes), cell.can->accelerometers.front().sample_rate_hz);
+  const CutSchedule schedule{axial_depth, {}};
+  setup = scheduled(setup, schedule);
   MillingSimulation milling{setup, rate_hz};
   CanEncoder encoder{read_dbc(cell.can->dbc), *cell.can, cell.file.string(), {0.2, seed}, 1'500'000'000'000'000'000};
   std::vector<CanFrame> frames;
   for (int i = 0; i < static_cast<int>(duration_s * rate_hz); ++i) {
-    const MillingState& state = milling.advance();
+    const MillingState& state = milling.advance(conditions_at(setup, schedule, (i + 1) / rate_hz));
     const auto due = encoder.advance(state.time, state.velocity, state.spindle_speed);
     frames.insert(frames.end(), due.begin(), due.end());
   }

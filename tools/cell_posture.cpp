@@ -13,7 +13,7 @@ namespace stillcut {
 
 CellDynamics read_cell_dynamics(const Cell& cell) {
   const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
-  return {read_dynamics_map(dynamics.map), {.modal = dynamics.modal, .power = dynamics.power, .trend = dynamics.trend}};
+  return {read_dynamics_map(dynamics.map), {.kind = dynamics.interpolation, .power = dynamics.power}};
 }
 
 Posture posture_of(const Cell& cell, const DynamicsMap& map, const std::string& asked) {

@@ -2,10 +2,23 @@
 #include <iostream>
 
 #include "drivers/files/input_error.hpp"
-#include "tools/commands.hpp"
+#include "tools/output_options.hpp"
+#include "tools/plot.hpp"
 #include "tools/programs.hpp"
 
 namespace stillcut {
+
+void add_output_options(CLI::App& command, OutputOptions& options, const char* csv, const char* plot) {
+  command.add_option("--csv", options.csv, csv + std::string("; - is standard output"));
+  command.add_option("--plot", options.plot, plot + std::string(", to a .svg or .png file"));
+  command.add_flag("--json", options.json, "One JSON object on standard output");
+}
+
+void check_output_options(const OutputOptions& options) {
+  if (options.json && options.csv == "-")
+    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
+  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+}
 
 int run_command_line(CLI::App& app, int argc, char** argv) {
   const auto complain = [&](const std::exception& error, int code) {

@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "drivers/files/cell.hpp"
-#include "tools/commands.hpp"
 #include "tools/cut_points.hpp"
 #include "tools/lobe_study.hpp"
 #include "tools/output_file.hpp"
+#include "tools/output_options.hpp"
 #include "tools/plot_lobes.hpp"
 #include "tools/progress.hpp"
 
@@ -19,15 +19,14 @@ namespace {
 
 constexpr int kDefaultCount = 201;
 
-struct LobesOptions {
-  std::string cell, speed, cuts, tolerance, csv, plot;
+struct LobesOptions : OutputOptions {
+  std::string cell, speed, cuts, tolerance;
   std::vector<std::string> postures;
   std::vector<double> feed_directions_deg;
   std::string method = "sdm";
   double max_depth_mm = 20.0;
   std::optional<double> confidence;
   int samples = Confidence{}.samples;
-  bool json = false;
 };
 
 // "MIN:MAX:COUNT" in rpm.
@@ -93,9 +92,7 @@ LobeQuestion question_of(const Cell& cell, const LobesOptions& options) {
 }
 
 void check_usage(const LobesOptions& options) {
-  if (options.json && options.csv == "-") {
-    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
-  }
+  check_output_options(options);
   if (!options.tolerance.empty() && !options.confidence) {
     throw CLI::ValidationError("--tolerance", "goes with --confidence");
   }
@@ -109,7 +106,6 @@ void check_usage(const LobesOptions& options) {
   if (options.confidence && options.samples * (1.0 - *options.confidence) < 0.5) {
     throw CLI::ValidationError("--samples", "too few for this confidence; at least 0.5/(1 - confidence) are needed");
   }
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
 }
 
 void run(const LobesOptions& options) {
@@ -173,9 +169,8 @@ void add_lobes_command(CLI::App& app) {
   command->add_option("--cuts", options->cuts,
                       "CSV file of cuts made, spindle_speed_rpm,axial_depth_mm,verdict (stable, marginal or chatter), "
                       "to be drawn on top");
-  command->add_option("--csv", options->csv, "Write the diagram; - is standard output (so without any output option)");
-  command->add_option("--plot", options->plot, "Draw the diagram to a .svg or .png file");
-  command->add_flag("--json", options->json, "One JSON object on standard output");
+  add_output_options(*command, *options, "Write the diagram, to standard output without any output option",
+                     "Draw the diagram");
   command->footer(
       "Examples: the lobes for a feed along +Y, as a table and a picture; two feeds at two postures in one picture:\n"
       "  stillcut lobes examples/demo-cell/cell.toml --feed-direction 90 --speed 6000:14000:101 \\\n"

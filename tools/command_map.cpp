@@ -1,8 +1,10 @@
 // stillcut map: how far the dynamics map can be trusted between its postures, and what it predicts at one; and a map
 // from a robot's description.
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "drivers/files/cell.hpp"
@@ -10,19 +12,19 @@
 #include "drivers/files/robot_file.hpp"
 #include "models/leave_one_out.hpp"
 #include "tools/cell_posture.hpp"
-#include "tools/commands.hpp"
 #include "tools/map_report.hpp"
 #include "tools/output_file.hpp"
+#include "tools/output_options.hpp"
 #include "tools/progress.hpp"
 #include "tools/robot_map.hpp"
 
 namespace stillcut {
 namespace {
 
-struct MapOptions {
-  std::string cell, posture, interpolation, csv, plot;
+struct MapOptions : OutputOptions {
+  std::string cell, posture;
   std::string robot, postures, out;
-  bool json = false;
+  std::optional<InterpolationKind> interpolation;
 };
 
 // Writes what was asked for; a table for people where standard output is free.
@@ -89,16 +91,10 @@ void write_from_robot(const MapOptions& options) {
 void run(const MapOptions& options) {
   if (!options.robot.empty()) return write_from_robot(options);
   if (options.cell.empty()) throw CLI::RequiredError("CELL");
-  if (options.json && options.csv == "-") {
-    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
-  }
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  check_output_options(options);
   const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   CellDynamics dynamics = read_cell_dynamics(cell);
-  if (!options.interpolation.empty()) {
-    dynamics.interpolation.modal = options.interpolation != "frf";
-    dynamics.interpolation.trend = options.interpolation == "trend";
-  }
+  if (options.interpolation) dynamics.interpolation.kind = *options.interpolation;
   try {
     options.posture.empty() ? report(options, dynamics) : predict(options, dynamics);
   } catch (const std::invalid_argument& error) {
@@ -114,19 +110,19 @@ void add_map_command(CLI::App& app) {
                          "Can the dynamics map be trusted between its postures; what it predicts at one; "
                          "a map from a robot's description");
   const auto options = std::make_shared<MapOptions>();
+  std::map<std::string, InterpolationKind> kinds;
+  for (std::size_t i = 0; i < kInterpolationNames.size(); ++i)
+    kinds.emplace(kInterpolationNames[i], static_cast<InterpolationKind>(i));
   command->add_option("CELL", options->cell, "Cell file; with --robot only where its map was measured");
-  CLI::Option* posture = command->add_option(
-      "--posture", options->posture,
-      "Predict the modes there instead: id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm "
-      "where the machine has no joints");
-  CLI::Option* interpolation =
-      command
-          ->add_option("--interpolation", options->interpolation,
-                       "For --posture: modal, frf or trend (default: the cell's). The report compares all three")
-          ->check(CLI::IsMember({"modal", "frf", "trend"}))
-          ->needs("--posture");
-  CLI::Option* csv = command->add_option("--csv", options->csv, "Write the table; - is standard output");
-  CLI::Option* plot = command->add_option("--plot", options->plot, "Draw to a .svg or .png file");
+  command->add_option("--posture", options->posture,
+                      "Predict the modes there instead: id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm "
+                      "where the machine has no joints");
+  command
+      ->add_option("--interpolation", options->interpolation,
+                   "For --posture: modal, frf or trend (default: the cell's). The report compares all three")
+      ->transform(CLI::CheckedTransformer(kinds))
+      ->needs("--posture");
+  add_output_options(*command, *options, "Write the table", "Draw");
   CLI::Option* robot =
       command->add_option("--robot", options->robot, "Make a map from this URDF file (docs/robot.md) instead");
   CLI::Option* out = command->add_option("--out", options->out, "Folder for that map");
@@ -134,9 +130,10 @@ void add_map_command(CLI::App& app) {
       ->add_option("--postures", options->postures,
                    "Where: posture,j1_deg,... or posture,x_mm,y_mm,z_mm; default: the robot's home")
       ->needs(robot);
-  robot->needs(out)->excludes(posture, interpolation, csv, plot);
+  robot->needs(out);
+  for (const char* other : {"--posture", "--interpolation", "--csv", "--plot"})
+    robot->excludes(command->get_option(other));
   out->needs(robot);
-  command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer(
       "Every posture of the map is predicted from all the others, in four ways, and held beside its own measurement.\n"
       "Example: the report with a picture, then the modes at a posture that nobody measured:\n"

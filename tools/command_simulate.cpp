@@ -9,7 +9,7 @@
 #include "drivers/can/candump_log.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/files/csv.hpp"
-#include "models/milling_simulation.hpp"
+#include "models/cut_schedule.hpp"
 #include "tools/can_encoder.hpp"
 #include "tools/cell_posture.hpp"
 #include "tools/commands.hpp"
@@ -65,11 +65,26 @@ MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
   const PredictedPosture predicted = predicted_posture(cell, read_cell_dynamics(cell), options.posture);
   if (predicted.outside) std::cerr << "stillcut: " << options.cell << ": " << outside_map_text(predicted) << '\n';
   setup.modes = predicted.posture.modes;
-  if (!options.depth.empty()) setup.axial_depth = parse_schedule("--depth", options.depth, 1e-3);
-  if (!options.speed.empty()) setup.spindle_speed = parse_schedule("--speed", options.speed, rpm_to_rad_s(1.0));
   setup.force_noise = options.force_noise;
   setup.seed = options.seed;
   return setup;
+}
+
+CutSchedule schedule_of(const SimulateOptions& options) {
+  CutSchedule schedule;
+  if (!options.depth.empty()) schedule.axial_depth = parse_schedule("--depth", options.depth, 1e-3);
+  if (!options.speed.empty()) schedule.spindle_speed = parse_schedule("--speed", options.speed, rpm_to_rad_s(1.0));
+  return schedule;
+}
+
+// What a simulation refuses is said of the cell file: options were looked at before.
+template <typename Make>
+auto said_of_cell(const Cell& cell, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell.file.string(), 0, error.what());
+  }
 }
 
 // Rows are dense enough for the modes, and for the sensors where there are any to feed.
@@ -140,14 +155,6 @@ struct Peaks {
   }
 };
 
-MillingSimulation simulation_of(const Cell& cell, const MillingSetup& setup, double rate_hz) {
-  try {
-    return MillingSimulation(setup, rate_hz);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(cell.file.string(), 0, error.what());
-  }
-}
-
 void print_summary(const SimulateOptions& options, std::int64_t rows, double rate_hz, const Peaks& peaks,
                    const std::optional<CanOutput>& can) {
   if (can && can->saturated() > 0)
@@ -175,12 +182,13 @@ void simulate(const SimulateOptions& options) {
     throw CLI::ValidationError("-", "only one of --csv -, --can - and --json can have standard output");
   if (!options.plot.empty()) plot::check_picture_name(options.plot);
   const Cell cell = read_cell(options.cell, {.dbc = !options.can.empty(), .bus = false});
-  const MillingSetup setup = setup_of(cell, options);
+  const CutSchedule schedule = schedule_of(options);
+  const MillingSetup setup = said_of_cell(cell, [&] { return scheduled(setup_of(cell, options), schedule); });
   const double rate_hz = row_rate_hz(cell, setup, options);
   const auto rows = static_cast<std::int64_t>(std::floor(options.duration_s * rate_hz * (1.0 + 1e-12))) + 1;
   if (!options.plot.empty() && rows > kMaxPlotRows)
     throw CLI::ValidationError("--plot", "too long for a picture; draw a shorter --duration");
-  MillingSimulation milling = simulation_of(cell, setup, rate_hz);
+  MillingSimulation milling = said_of_cell(cell, [&] { return MillingSimulation(setup, rate_hz); });
   std::optional<CsvOutput> csv;
   std::optional<CanOutput> can;
   if (!options.csv.empty()) csv.emplace(options.csv);
@@ -190,7 +198,8 @@ void simulate(const SimulateOptions& options) {
   std::vector<MillingState> states;
   Progress progress("milling");
   for (std::int64_t i = 0; i < rows; ++i) {
-    const MillingState& state = i == 0 ? milling.state() : milling.advance();
+    const MillingState& state =
+        i == 0 ? milling.state() : milling.advance(conditions_at(setup, schedule, static_cast<double>(i) / rate_hz));
     if (csv) csv->write(state);
     if (can) can->write(state);
     if (!options.plot.empty()) states.push_back(state);

@@ -15,19 +15,18 @@
 #include "models/linear_cut.hpp"
 #include "models/receptance.hpp"
 #include "tools/cell_posture.hpp"
-#include "tools/commands.hpp"
 #include "tools/cut_points.hpp"
 #include "tools/output_file.hpp"
+#include "tools/output_options.hpp"
 #include "tools/plot_lobes.hpp"
 #include "tools/progress.hpp"
 
 namespace stillcut {
 namespace {
 
-struct StabilityOptions {
-  std::string cell, points, posture, csv, plot;
+struct StabilityOptions : OutputOptions {
+  std::string cell, points, posture;
   std::optional<double> feed_direction_deg;
-  bool json = false;
 };
 
 struct Judged {
@@ -165,10 +164,7 @@ void draw(const Judged& judged, const StabilityOptions& options) {
 }
 
 void run(const StabilityOptions& options) {
-  if (options.json && options.csv == "-") {
-    throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
-  }
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  check_output_options(options);
   const bool table = !options.json && options.csv.empty();
   const Judged judged = compute(options, table || options.json || !options.plot.empty());
   if (!options.csv.empty()) write_csv(judged, options.csv);
@@ -190,9 +186,8 @@ void add_stability_command(CLI::App& app) {
                       "(default: the cell's)");
   command->add_option("--feed-direction", options->feed_direction_deg,
                       "Degrees from +X toward +Y (default: the cell's)");
-  command->add_option("--csv", options->csv, "Write radius, frequency and period of each cut; - is standard output");
-  command->add_option("--plot", options->plot, "Draw the cuts on their lobes to a .svg or .png file");
-  command->add_flag("--json", options->json, "One JSON object on standard output, verdicts included");
+  add_output_options(*command, *options, "Write radius, frequency and period of each cut",
+                     "Draw the cuts on their lobes");
   command->footer(
       "Example: is the cell's cut stable, and would it be at 7570 rpm?\n"
       "  printf 'spindle_speed_rpm,axial_depth_mm\\n8500,3.6\\n7570,3.6\\n' > cuts.csv\n"

@@ -4,10 +4,11 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "dsp/numbers.hpp"
 
 namespace stillcut::plot {
 
@@ -83,8 +84,8 @@ struct Image {
 };
 
 struct Axis {
-  std::string label;                                                 // with unit
-  double min = std::numeric_limits<double>::quiet_NaN(), max = min;  // NaN: from the data
+  std::string label;                 // with unit
+  double min = kNaN, max = min;      // NaN: from the data
   bool logarithmic = false;          // y axes only; what is not above zero stands at the lower end
   std::vector<std::string> names{};  // x axes only: what stands at 1, 2, ... instead of numbers
 };

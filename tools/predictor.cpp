@@ -41,20 +41,16 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
 }
 
 NominalPrediction Predictor::nominal() const {
+  const PredictedPosture predicted = predict(posture_);
   try {
-    LobeDiagram diagram = compute(posture_, cut_);
-    const PredictedPosture predicted = predict_posture(map_, posture_, interpolation_);
-    if (diagram.valid && predicted.superposed && predicted.posture.modes.size() > kMostRefitModes) {
-      return {diagram, cell_file_ +
-                           ": dynamics.interpolation: \"frf\" fits the modes anew at every posture, often too "
-                           "late for an arm that moves; use \"modal\" or \"trend\""};
-    }
-    if (diagram.valid) return {diagram, {}};
-    return {diagram, cell_file_ + ": dynamics.posture: " + outside_map_text(predicted) +
-                         "; no prediction is used; tap the robot there"};
+    LobeDiagram diagram = compute(predicted, cut_);
+    if (predicted.outside)
+      return {diagram, cell_file_ + ": dynamics.posture: " + outside_map_text(predicted) +
+                           "; no prediction is used; tap the robot there"};
+    return {diagram, slow_fit_warning()};
   } catch (const std::invalid_argument& error) {
     LobeDiagram modes_only;
-    summarise_modes(predict_posture(map_, posture_, interpolation_).posture.modes, modes_only);
+    summarise_modes(predicted.posture.modes, modes_only);
     modes_only.valid = true;
     return {modes_only, cell_file_ + ": no stability lobes, chatter is judged by what is heard alone: " + error.what()};
   }
@@ -70,7 +66,7 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
     if (state.milling != Milling::unknown) cut.milling = state.milling;
     if (std::isfinite(state.radial_depth)) cut.radial_depth = state.radial_depth;
     try {
-      last_ = compute(posture, cut);
+      last_ = compute(predict(posture), cut);
     } catch (const std::invalid_argument&) {
       return std::nullopt;  // an immersion or posture that cannot be; no diagram is better than a wrong one
     }
@@ -81,8 +77,22 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
   return last_;
 }
 
-LobeDiagram Predictor::compute(const Posture& posture, const Cut& cut) const {
-  const PredictedPosture predicted = with_few_modes(predict_posture(map_, posture, interpolation_));
+PredictedPosture Predictor::predict(const Posture& posture) const {
+  return with_few_modes(predict_posture(map_, posture, interpolation_));
+}
+
+// Between measured postures `frf` has the modes of all of them, and more than a few are fitted anew each time.
+std::string Predictor::slow_fit_warning() const {
+  std::size_t modes = 0;
+  for (const Posture& posture : map_.postures) modes += posture.modes.size();
+  if (interpolation_.kind != InterpolationKind::frf || modes <= kMostRefitModes) return {};
+  return cell_file_ +
+         ": dynamics.interpolation: \"frf\" fits the modes anew at every posture, often too late for an arm that "
+         "moves; "
+         "use \"modal\" or \"trend\"";
+}
+
+LobeDiagram Predictor::compute(const PredictedPosture& predicted, const Cut& cut) const {
   LobeDiagram diagram =
       compute_lobe_diagram(tool_, material_, cut, spindle_, predicted.posture.modes, {.points = kPoints});
   if (predicted.outside) diagram.valid = false;  // far from every tap test: say nothing rather than extrapolate

@@ -49,7 +49,9 @@ class Predictor {
   [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
 
  private:
-  [[nodiscard]] LobeDiagram compute(const Posture& posture, const Cut& cut) const;
+  [[nodiscard]] std::string slow_fit_warning() const;  // empty: none
+  [[nodiscard]] PredictedPosture predict(const Posture& posture) const;
+  [[nodiscard]] LobeDiagram compute(const PredictedPosture& predicted, const Cut& cut) const;
 
   std::string cell_file_;
   Tool tool_;

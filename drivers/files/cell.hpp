@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/files/input_error.hpp"
+#include "models/interpolation_kind.hpp"
 #include "models/machining.hpp"
 #include "rt/signals.hpp"
 
@@ -21,8 +22,7 @@ struct RegionSettings {
 
 struct DynamicsSettings {
   std::filesystem::path map;  // folder, absolute
-  bool modal = true;          // interpolation = "modal" | "frf" | "trend"
-  bool trend = false;         // "trend": modal too
+  InterpolationKind interpolation = InterpolationKind::modal;
   double power = 1.0;
   std::string posture;  // id, six joint angles in degrees, or x,y,z in mm; may be empty
 };

@@ -122,10 +122,10 @@ std::string read_posture(TomlSection& section) {
 DynamicsSettings read_dynamics(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs) {
   DynamicsSettings dynamics;
   const std::string map = section.text("map");
-  const auto kind = section.choice<std::string_view>("interpolation",
-                                                     {{"modal", "modal"}, {"frf", "frf"}, {"trend", "trend"}}, "modal");
-  dynamics.modal = kind != "frf";
-  dynamics.trend = kind == "trend";
+  dynamics.interpolation = section.choice<InterpolationKind>(
+      "interpolation",
+      {{"modal", InterpolationKind::modal}, {"frf", InterpolationKind::frf}, {"trend", InterpolationKind::trend}},
+      InterpolationKind::modal);
   dynamics.power = section.number("power", above(0, 20), 1.0);
   dynamics.posture = read_posture(section);
   section.finish();

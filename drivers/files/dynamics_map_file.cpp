@@ -150,8 +150,7 @@ DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
       postures.fail(*rows[i], postures.require_column("posture"),
                     posture.id + " has no modes; add them to modes.csv or remove the posture");
     }
-    std::stable_sort(posture.modes.begin(), posture.modes.end(),
-                     [](const Mode& a, const Mode& b) { return a.natural_frequency < b.natural_frequency; });
+    sort_modes(posture.modes);
   }
   return map;
 }

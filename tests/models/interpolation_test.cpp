@@ -51,7 +51,8 @@ TEST(Interpolation, AMeasuredPostureReturnsItsOwnModes) {
   const DynamicsMap map = random_map(random, 9);
   for (const bool modal : {true, false}) {
     for (const Posture& posture : map.postures) {
-      const PredictedPosture predicted = predict_posture(map, posture, {.modal = modal});
+      const PredictedPosture predicted =
+          predict_posture(map, posture, {.kind = modal ? InterpolationKind::modal : InterpolationKind::frf});
       EXPECT_EQ(predicted.nearest, posture.id);
       EXPECT_EQ(predicted.nearest_distance, 0.0);
       ASSERT_EQ(predicted.posture.modes.size(), posture.modes.size());
@@ -130,7 +131,7 @@ TEST(Interpolation, FrfIsTheWeightedSumOfTheReceptances) {
   const DynamicsMap map = random_map(random, 7);
   const Posture query = random_query(random);
   const auto weights = inverse_distance_weights(map, query, 1.0);
-  const auto modes = predict_posture(map, query, {.modal = false}).posture.modes;
+  const auto modes = predict_posture(map, query, {.kind = InterpolationKind::frf}).posture.modes;
   EXPECT_EQ(modes.size(), 28u);
   for (const double frequency : {10.0, 350.0, 800.0, 3100.0, 9000.0}) {
     Eigen::Matrix3cd expected = Eigen::Matrix3cd::Zero();

@@ -128,7 +128,7 @@ TEST(LeftOutScatter, IsTheRootMeanSquareOfWhatTheReportSays) {
     }
   }
   const LeaveOneOut report = leave_one_out(map);
-  const Interpolation ways[] = {{.modal = false}, {}, {.trend = true}};
+  const Interpolation ways[] = {{.kind = InterpolationKind::frf}, {}, {.kind = InterpolationKind::trend}};
   const MapMethod methods[] = {MapMethod::frf, MapMethod::modal, MapMethod::trend};
   for (std::size_t way = 0; way < 3; ++way) {
     const auto scatter = left_out_scatter(map, ways[way]);

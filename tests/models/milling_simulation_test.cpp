@@ -1,5 +1,3 @@
-#include "models/milling_simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 #include <tuple>
+
+#include "models/cut_schedule.hpp"
 
 namespace stillcut {
 namespace {
@@ -106,8 +106,8 @@ TEST(MillingSimulation, MeanDeflectionInAStableCutIsTheMeanForceOverTheStiffness
 double growth_per_tooth_period(MillingSetup setup, double rate_hz, double settle_s, double periods) {
   MillingSimulation quiet(setup, rate_hz);
   const double tooth_period = kTwoPi / (setup.cut.spindle_speed * setup.tool.teeth);
-  setup.impulse = {1e-4, 1e-4, 0.0};
   MillingSimulation struck(setup, rate_hz);
+  struck.structure().strike({1e-4, 1e-4, 0.0});
   const auto samples_of = [&](double seconds) { return static_cast<int>(std::lround(seconds * rate_hz)); };
   const auto level = [&](double seconds) {  // rms of the difference
     double sum = 0.0;
@@ -209,10 +209,11 @@ TEST(MillingSimulation, ChatterEndsWhereTheToolJumpsOutOfTheCut) {
 
 TEST(MillingSimulation, NoForceAndNoChipInTheAir) {
   MillingSetup setup = slotting(2);
-  setup.axial_depth = {{0, 0}, {0.1, 0}, {0.1, 1e-3}, {0.2, 1e-3}, {0.2, 0}};
+  const CutSchedule schedule{{{0, 0}, {0.1, 0}, {0.1, 1e-3}, {0.2, 1e-3}, {0.2, 0}}, {}};
+  setup = scheduled(setup, schedule);
   MillingSimulation cut(setup, 20e3);
   for (int i = 1; i < 6000; ++i) {
-    const MillingState& state = cut.advance();
+    const MillingState& state = cut.advance(conditions_at(setup, schedule, i / 20e3));
     if (state.time < 0.0999 || state.time > 0.2001) {
       ASSERT_EQ(state.force.norm(), 0.0) << state.time;
       ASSERT_EQ(state.chip, 0.0);
@@ -226,10 +227,11 @@ TEST(MillingSimulation, NoForceAndNoChipInTheAir) {
 
 TEST(MillingSimulation, SamplesAreEquallySpacedAndFollowTheSpeedSchedule) {
   MillingSetup setup = slotting(2);
-  setup.spindle_speed = {{0.05, rpm_to_rad_s(6000)}, {0.15, rpm_to_rad_s(5000)}};
+  const CutSchedule schedule{{}, {{0.05, rpm_to_rad_s(6000)}, {0.15, rpm_to_rad_s(5000)}}};
+  setup = scheduled(setup, schedule);
   MillingSimulation cut(setup, 25.6e3);
   for (int i = 1; i <= 5120; ++i) {
-    const MillingState& state = cut.advance();
+    const MillingState& state = cut.advance(conditions_at(setup, schedule, i / 25.6e3));
     ASSERT_DOUBLE_EQ(state.time, i / 25.6e3);
     ASSERT_NEAR(rad_s_to_rpm(state.spindle_speed), 6000 - 10000 * std::clamp(state.time - 0.05, 0.0, 0.1), 1e-6);
   }
@@ -262,39 +264,25 @@ TEST(MillingSimulation, RefusesWhatItCannotSimulate) {
   refused([](MillingSetup& s) { s.modes.clear(); });
   refused([](MillingSetup& s) { s.modes[0].damping_ratio = 1.0; });
   refused([](MillingSetup& s) { s.modes[0].stiffness = 0.0; });
-  refused([](MillingSetup& s) { s.tool.shape = ToolShape::ball; });
   refused([](MillingSetup& s) { s.tool.pitch.clear(); });
   refused([](MillingSetup& s) { s.cut.spindle_speed = 0.0; });
-  refused([](MillingSetup& s) { s.axial_depth = {{0, 1e-3}, {1, -1e-3}}; });
-  refused([](MillingSetup& s) { s.axial_depth = {{1, 1e-3}, {0, 1e-3}}; });
-  refused([](MillingSetup& s) { s.spindle_speed = {{0, std::nan("")}}; });
-}
-
-TEST(ModalStructure, KeepsItsEnergyWithoutDamping) {
-  const std::vector<Mode> modes{mode_of(12, 0.0, 1e6, {1, 0.2, 0}), mode_of(700, 0.0, 2e7, {0, 1, 0.5}),
-                                mode_of(1900, 0.0, 5e7, {0.1, 0, 1})};
-  ModalStructure structure(modes, 1.0 / 60e3);
-  structure.strike({0.3, 0.2, -0.1});
-  const double before = structure.energy();
-  for (int i = 0; i < 600000; ++i) structure.advance(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
-  EXPECT_NEAR(structure.energy(), before, 1e-8 * before);
-}
-
-TEST(ModalStructure, FollowsTheClosedFormOfADampedRampResponse) {
-  const double w = kTwoPi * 50, zeta = 0.1, k = 2e6, slope = 1e4;  // N/s from zero
-  const std::vector<Mode> modes{mode_of(50, zeta, k, {0, 1, 0})};
-  const double step = 1e-3;
-  ModalStructure structure(modes, step);
-  const double wd = w * std::sqrt(1 - zeta * zeta);
-  for (int i = 0; i < 100; ++i) {
-    structure.advance({0, slope * i * step, 0}, {0, slope * (i + 1) * step, 0});
-    const double t = (i + 1) * step;
-    const double expected =
-        slope / k *
-        (t - 2 * zeta / w +
-         std::exp(-zeta * w * t) * (2 * zeta / w * std::cos(wd * t) + (2 * zeta * zeta - 1) / wd * std::sin(wd * t)));
-    ASSERT_NEAR(structure.displacement().y(), expected, 1e-12 * slope / k) << t;
-  }
+  refused([](MillingSetup& s) { s.slowest = 1.0; });
+  refused([](MillingSetup& s) { s.cut.axial_depth = std::nan(""); });
+  EXPECT_THROW(scheduled(good, {{{0, 1e-3}, {1, -1e-3}}, {}}), std::invalid_argument);
+  EXPECT_THROW(scheduled(good, {{{1, 1e-3}, {0, 1e-3}}, {}}), std::invalid_argument);
+  EXPECT_THROW(scheduled(good, {{}, {{0, std::nan("")}}}), std::invalid_argument);
+  MillingSimulation cut(good, 20e3);
+  const auto refused_while_running = [&](auto change) {
+    MillingConditions conditions = cut.conditions();
+    change(conditions);
+    EXPECT_THROW(cut.advance(conditions), std::invalid_argument);
+    EXPECT_EQ(cut.state().time, 0.0);
+  };
+  refused_while_running([](MillingConditions& c) { c.axial_depth = 2e-3; });
+  refused_while_running([](MillingConditions& c) { c.spindle_speed *= 1.1; });
+  refused_while_running([](MillingConditions& c) { c.milling = Milling::up, c.radial_depth = 0.03; });
+  refused_while_running([](MillingConditions& c) { c.milling = Milling::up, c.radial_depth = 0.0; });
+  refused_while_running([](MillingConditions& c) { c.feed_per_tooth = -1e-6; });
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "models/machining.hpp"
 #include "models/receptance.hpp"
 #include "models/receptance_peaks.hpp"
+#include "tests/sanitized.hpp"
 
 namespace stillcut {
 namespace {
@@ -145,6 +146,7 @@ TEST(ModalRefit, BringsThePaperSizedMapDownToTwelve) {
   expect_physical(refit.modes);
   EXPECT_LT(refit.error.rms, 0.03);
   EXPECT_LT(refit.error.at_peak, 0.1);  // 0.049 seen
+  if (test::kSanitized) return;
   const ModalRefit again = refit_modes(modes);
   for (std::size_t m = 0; m < refit.modes.size(); ++m) {
     EXPECT_EQ(again.modes[m].natural_frequency, refit.modes[m].natural_frequency);

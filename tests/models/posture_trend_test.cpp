@@ -92,7 +92,7 @@ TEST(PostureTrend, PredictionStaysPhysicalFarOutside) {
   for (int trial = 0; trial < 100; ++trial) {
     Posture query;
     for (double& joint : query.joints) joint = std::uniform_real_distribution<>(-3, 3)(random);
-    const PredictedPosture predicted = predict_posture(map, query, {.trend = true});
+    const PredictedPosture predicted = predict_posture(map, query, {.kind = InterpolationKind::trend});
     EXPECT_TRUE(predicted.outside);
     ASSERT_EQ(predicted.posture.modes.size(), 2U);
     for (const Mode& mode : predicted.posture.modes) {
@@ -109,7 +109,7 @@ TEST(PostureTrend, MeasuredPosturesReturnTheirOwnModes) {
   std::mt19937_64 random(6);
   const DynamicsMap map = plane(random, 8, true);
   for (const Posture& posture : map.postures) {
-    const auto modes = predict_posture(map, posture, {.trend = true}).posture.modes;
+    const auto modes = predict_posture(map, posture, {.kind = InterpolationKind::trend}).posture.modes;
     ASSERT_EQ(modes.size(), posture.modes.size());
     for (std::size_t m = 0; m < modes.size(); ++m)
       EXPECT_EQ(modes[m].natural_frequency, posture.modes[m].natural_frequency);

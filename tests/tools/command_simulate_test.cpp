@@ -130,12 +130,10 @@ double unrepeated_motion(const MillingSetup& setup, double settle_s, double seco
 // depth.
 TEST(DemoCell, ChattersAtItsOwnSpeedAndNotAtTheCorrectedOnes) {
   const Cell cell = read_cell(kDemoCell, {.bus = false});
-  MillingSetup setup{.tool = *cell.tool,
-                     .material = *cell.material,
-                     .cut = *cell.cut,
-                     .modes = {},
-                     .axial_depth = {},
-                     .spindle_speed = {}};
+  MillingSetup setup;
+  setup.tool = *cell.tool;
+  setup.material = *cell.material;
+  setup.cut = *cell.cut;
   setup.modes = find_posture(read_dynamics_map(cell.dynamics->map), cell.dynamics->posture).modes;
   constexpr double kChatterFrequency = 757.0;  // Hz, of the cut at 8500 rpm
   EXPECT_GT(unrepeated_motion(setup, 1.0, 0.5), 5e-6);

@@ -69,7 +69,7 @@ TEST(Cell, ReadsRegionSpindleAndDynamicsOfTheExampleInSiUnits) {
   expect_close(cell.spindle->jerk, 20000.0 * pi / 30.0);
 
   EXPECT_EQ(cell.dynamics->map, folder.path() / "map");
-  EXPECT_TRUE(cell.dynamics->modal);
+  EXPECT_EQ(cell.dynamics->interpolation, InterpolationKind::modal);
   EXPECT_EQ(cell.dynamics->power, 1.0);
   EXPECT_EQ(cell.dynamics->posture, "12");
 }
@@ -175,7 +175,7 @@ mode = "active"
   EXPECT_EQ(cell.cut->path, PathKind::zigzag);
   ASSERT_EQ(cell.region->islands.size(), 2U);
   expect_close(cell.region->islands[1][2][1], 0.005);
-  EXPECT_FALSE(cell.dynamics->modal);
+  EXPECT_EQ(cell.dynamics->interpolation, InterpolationKind::frf);
   EXPECT_EQ(cell.dynamics->power, 2.0);
   EXPECT_EQ(cell.dynamics->posture, "0,-90,90.5,0,0,15");
   EXPECT_EQ(cell.can->bus, "local:cell-1");
