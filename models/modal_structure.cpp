@@ -89,6 +89,20 @@ Eigen::Vector3d ModalStructure::acceleration() const {
   return sum;
 }
 
+std::vector<ModalMotion> ModalStructure::motion() const {
+  std::vector<ModalMotion> motion;
+  for (const Oscillator& mode : modes_) motion.push_back({mode.q, mode.v});
+  return motion;
+}
+
+void ModalStructure::set_motion(std::span<const ModalMotion> motion) {
+  if (motion.size() != modes_.size()) throw std::invalid_argument("the motion has another number of modes");
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    modes_[i].q = motion[i].displacement;
+    modes_[i].v = motion[i].velocity;
+  }
+}
+
 double ModalStructure::energy() const {
   double sum = 0.0;
   for (const Oscillator& mode : modes_)

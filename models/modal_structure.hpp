@@ -13,6 +13,11 @@
 
 namespace stillcut {
 
+// How far a mode is out along its direction, and how fast: m, m/s.
+struct ModalMotion {
+  double displacement = 0.0, velocity = 0.0;
+};
+
 class ModalStructure final : public Structure {
  public:
   // `step` in s. Throws std::invalid_argument unless every mode has frequency > 0, stiffness > 0, 0 <= damping < 1 and
@@ -31,6 +36,11 @@ class ModalStructure final : public Structure {
   [[nodiscard]] Eigen::Vector3d displacement() const override;
   [[nodiscard]] Eigen::Vector3d velocity() const override;
   [[nodiscard]] Eigen::Vector3d acceleration() const override;
+
+  // The modes' motion, in the order of the modes; what was read from one structure can be set in another that has as
+  // many modes (std::invalid_argument otherwise).
+  [[nodiscard]] std::vector<ModalMotion> motion() const;
+  void set_motion(std::span<const ModalMotion> motion);
 
   // Kinetic plus potential energy of all modes, J.
   [[nodiscard]] double energy() const;

@@ -1,6 +1,6 @@
 // What the tool is fastened to: anything whose tool point moves under a cutting force, in steps of equal length. The
-// milling simulation knows no more of a machine than this; kinds: models/modal_structure (a dynamics map's modes) and
-// the robots.
+// milling simulation knows no more of a machine than this; kinds: models/modal_structure (a dynamics map's modes),
+// models/newmark_robot (a robot, whole) and models/linearised_robot (a robot, fast).
 #pragma once
 
 #include <Eigen/Core>
