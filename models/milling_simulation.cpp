@@ -257,8 +257,9 @@ const MillingState& MillingSimulation::advance(const MillingConditions& conditio
   state_.spindle_angle = spindle_angle_ + setup_.cut.feed_direction;
   state_.axial_depth = conditions.axial_depth;
   if (!(state_.displacement.norm() < kLostAt))
-    throw std::runtime_error("at " + std::to_string(state_.time) + " s the tool point is more than " +
-                             std::to_string(kLostAt).substr(0, 3) + " m off its path: the motion grows without bound");
+    throw std::runtime_error("at " + std::to_string(state_.time) + " s: the tool leaves its path by more than " +
+                             std::to_string(kLostAt).substr(0, 3) +
+                             " m; the motion diverges: the cut is unstable or the force too large");
   return state_;
 }
 

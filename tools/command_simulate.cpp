@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,7 +10,9 @@
 #include "drivers/can/candump_log.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/files/csv.hpp"
+#include "drivers/files/robot_file.hpp"
 #include "models/cut_schedule.hpp"
+#include "models/robot_milling.hpp"
 #include "tools/can_encoder.hpp"
 #include "tools/cell_posture.hpp"
 #include "tools/commands.hpp"
@@ -26,7 +29,8 @@ constexpr double kRateGrain = 1000.0;             // Hz: rates of rows are round
 constexpr std::int64_t kMaxPlotRows = 4'000'000;  // bounds the memory that a picture takes
 
 struct SimulateOptions {
-  std::string cell, posture, depth, speed, csv, can, plot;
+  std::string cell, robot, posture, depth, speed, csv, can, plot;
+  RobotIntegrator integrator = RobotIntegrator::whole;
   double duration_s = 0.0, rate_hz = 0.0, noise_m_per_s2 = 0.2, force_noise = 0.02;
   std::uint64_t seed = 1;
   bool json = false;
@@ -57,16 +61,35 @@ Schedule parse_schedule(const std::string& option, const std::string& text, doub
   return schedule;
 }
 
+// The robot of a file at its home posture, or at the joint angles that were asked for.
+Arm read_arm(const SimulateOptions& options) {
+  Arm arm = read_robot(options.robot);
+  if (options.posture.empty()) return arm;
+  const std::vector<std::string> angles = CLI::detail::split(options.posture, ',');
+  if (angles.size() != arm.joints.size())
+    throw CLI::ValidationError("--posture", "with --robot takes one angle a joint, in degrees: " +
+                                                std::to_string(arm.joints.size()) + " with commas between");
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    if (!CLI::detail::lexical_cast(angles[i], arm.joints[i].home))
+      throw CLI::ValidationError("--posture", "'" + angles[i] + "' is no angle in degrees");
+    arm.joints[i].home = deg_to_rad(arm.joints[i].home);
+  }
+  if (const std::string beyond = beyond_limits(arm, home_angles(arm)); !beyond.empty())
+    throw CLI::ValidationError("--posture", beyond);
+  return arm;
+}
+
 MillingSetup setup_of(const Cell& cell, const SimulateOptions& options) {
   MillingSetup setup;
   setup.tool = require(cell, cell.tool, "tool");
   setup.material = require(cell, cell.material, "material");
   setup.cut = require(cell, cell.cut, "cut");
+  setup.force_noise = options.force_noise;
+  setup.seed = options.seed;
+  if (!options.robot.empty()) return setup;
   const PredictedPosture predicted = predicted_posture(cell, read_cell_dynamics(cell), options.posture);
   if (predicted.outside) std::cerr << "stillcut: " << options.cell << ": " << outside_map_text(predicted) << '\n';
   setup.modes = predicted.posture.modes;
-  setup.force_noise = options.force_noise;
-  setup.seed = options.seed;
   return setup;
 }
 
@@ -77,13 +100,13 @@ CutSchedule schedule_of(const SimulateOptions& options) {
   return schedule;
 }
 
-// What a simulation refuses is said of the cell file: options were looked at before.
+// What a simulation refuses is said of the file that it comes from: options were looked at before.
 template <typename Make>
-auto said_of_cell(const Cell& cell, Make make) {
+auto said_of(const std::filesystem::path& file, Make make) {
   try {
     return make();
   } catch (const std::invalid_argument& error) {
-    throw InputError(cell.file.string(), 0, error.what());
+    throw InputError(file.string(), 0, error.what());
   }
 }
 
@@ -183,12 +206,14 @@ void simulate(const SimulateOptions& options) {
   if (!options.plot.empty()) plot::check_picture_name(options.plot);
   const Cell cell = read_cell(options.cell, {.dbc = !options.can.empty(), .bus = false});
   const CutSchedule schedule = schedule_of(options);
-  const MillingSetup setup = said_of_cell(cell, [&] { return scheduled(setup_of(cell, options), schedule); });
+  MillingSetup setup = said_of(cell.file, [&] { return scheduled(setup_of(cell, options), schedule); });
+  if (!options.robot.empty())
+    setup = said_of(options.robot, [&] { return held_by_robot(setup, read_arm(options), options.integrator); });
   const double rate_hz = row_rate_hz(cell, setup, options);
   const auto rows = static_cast<std::int64_t>(std::floor(options.duration_s * rate_hz * (1.0 + 1e-12))) + 1;
   if (!options.plot.empty() && rows > kMaxPlotRows)
     throw CLI::ValidationError("--plot", "too long for a picture; draw a shorter --duration");
-  MillingSimulation milling = said_of_cell(cell, [&] { return MillingSimulation(setup, rate_hz); });
+  MillingSimulation milling = said_of(cell.file, [&] { return MillingSimulation(setup, rate_hz); });
   std::optional<CsvOutput> csv;
   std::optional<CanOutput> can;
   if (!options.csv.empty()) csv.emplace(options.csv);
@@ -197,20 +222,30 @@ void simulate(const SimulateOptions& options) {
   Peaks peaks;
   std::vector<MillingState> states;
   Progress progress("milling");
-  for (std::int64_t i = 0; i < rows; ++i) {
-    const MillingState& state =
-        i == 0 ? milling.state() : milling.advance(conditions_at(setup, schedule, static_cast<double>(i) / rate_hz));
+  std::string stopped;  // why, where the motion could not be continued
+  std::int64_t written = 0;
+  for (; written < rows; ++written) {
+    try {
+      if (written > 0) milling.advance(conditions_at(setup, schedule, static_cast<double>(written) / rate_hz));
+    } catch (const std::runtime_error& error) {
+      stopped = error.what();
+      break;
+    }
+    const MillingState& state = milling.state();
     if (csv) csv->write(state);
     if (can) can->write(state);
     if (!options.plot.empty()) states.push_back(state);
     peaks.add(state);
-    if (i % 1024 == 0) progress.update(static_cast<double>(i) / static_cast<double>(rows));
+    if (written % 1024 == 0) progress.update(static_cast<double>(written) / static_cast<double>(rows));
   }
   progress.finish();
   if (csv) csv->finish();
   if (can) can->finish();
   if (!options.plot.empty())
     plot::write_figure(simulation_figure("Simulated cut: " + setup.material.name, states), options.plot);
+  if (!stopped.empty())
+    throw InputError((options.robot.empty() ? cell.file : std::filesystem::path(options.robot)).string(), 0,
+                     "the simulation stopped " + stopped);
   print_summary(options, rows, rate_hz, peaks, can);
 }
 
@@ -223,7 +258,16 @@ void add_simulate_command(CLI::App& app) {
   command->add_option("--duration", options->duration_s, "How long to mill, s")->required()->check(CLI::PositiveNumber);
   command->add_option("--depth", options->depth, "Axial depth over time, s:mm,s:mm,... (default: the cell's)");
   command->add_option("--speed", options->speed, "Spindle speed over time, s:rpm,s:rpm,... (default: the cell's)");
-  command->add_option("--posture", options->posture, "Posture of the dynamics map (default: the cell's)");
+  command->add_option("--robot", options->robot,
+                      "Hold the tool by the robot of a .urdf file, which moves along the feed, not by the cell's map");
+  command
+      ->add_option("--integrator", options->integrator,
+                   "Of the robot: whole, all its equations of motion, or linearised, much faster")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RobotIntegrator>{
+          {"whole", RobotIntegrator::whole}, {"linearised", RobotIntegrator::linearised}}))
+      ->needs("--robot");
+  command->add_option("--posture", options->posture,
+                      "Posture of the dynamics map (default: the cell's); with --robot its joint angles in degrees");
   command->add_option("--csv", options->csv, "Write time, force, displacement, chip and speed; - is standard output");
   command->add_option("--can", options->can, "Write what the sensors would send, as candump -L does");
   command->add_option("--plot", options->plot, "Draw the cut to a .svg or .png file");
@@ -242,7 +286,10 @@ void add_simulate_command(CLI::App& app) {
   command->footer(
       "Example: air, entry, a sound cut, then so deep that it chatters, exit:\n"
       "  stillcut simulate examples/demo-cell/cell.toml --duration 6 --can cut.log --plot cut.svg \\\n"
-      "    --depth 0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,5.3:3.6,5.4:0");
+      "    --depth 0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,5.3:3.6,5.4:0\n"
+      "The robot itself, from its description:\n"
+      "  stillcut simulate examples/demo-robot/cell.toml --robot examples/demo-robot/robot.urdf \\\n"
+      "    --duration 2 --plot cut.svg");
   command->callback([options] { simulate(*options); });
 }
 

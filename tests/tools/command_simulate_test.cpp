@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -124,6 +125,40 @@ double unrepeated_motion(const MillingSetup& setup, double settle_s, double seco
     last[static_cast<std::size_t>(i % kRowsPerTurn)] = now;
   }
   return std::sqrt(sum / rows);
+}
+
+const std::string kMachiningRobotCell = TEST_DATA "/../../examples/demo-robot/cell.toml";
+const std::string kMachiningRobot = TEST_DATA "/../../examples/demo-robot/robot.urdf";
+
+double peak_y_um(const std::filesystem::path& csv) {
+  const CsvTable table = read_csv(csv);
+  double peak = 0.0;
+  for (const CsvRow& row : table.rows()) peak = std::max(peak, std::abs(table.number(row, 5)));
+  return peak;
+}
+
+TEST(SimulateCommand, ARobotsTwoIntegratorsAgreeOnASmallCut) {
+  const auto whole = temporary("whole.csv"), fast = temporary("fast.csv");
+  const std::vector<std::string> cut{kMachiningRobotCell, "--robot", kMachiningRobot, "--duration", "0.3"};
+  auto with = [&](const char* integrator, const std::filesystem::path& csv) {
+    std::vector<std::string> arguments = cut;
+    arguments.insert(arguments.end(), {"--integrator", integrator, "--csv", csv.string()});
+    return simulate(arguments);
+  };
+  ASSERT_EQ(with("whole", whole), 0);
+  ASSERT_EQ(with("linearised", fast), 0);
+  EXPECT_GT(peak_y_um(whole), 10.0);
+  EXPECT_NEAR(peak_y_um(whole), peak_y_um(fast), 0.03 * peak_y_um(fast));
+}
+
+TEST(SimulateCommand, RefusesARobotThatCannotStandThereOrFollow) {
+  EXPECT_EQ(simulate({kMachiningRobotCell, "--robot", kMachiningRobot, "--duration", "0.1", "--posture", "0,0,0"}), 2);
+  EXPECT_EQ(
+      simulate({kMachiningRobotCell, "--robot", kMachiningRobot, "--duration", "0.1", "--posture", "0,0,0,0,500,0"}),
+      2);
+  EXPECT_EQ(simulate({kMachiningRobotCell, "--robot", kMachiningRobotCell, "--duration", "0.1"}), 3);
+  EXPECT_EQ(simulate({kMachiningRobotCell, "--robot", "none.urdf", "--duration", "0.1"}), 3);
+  EXPECT_EQ(simulate({kMachiningRobotCell, "--duration", "0.1", "--integrator", "whole"}), 2);  // goes with --robot
 }
 
 // What the demo tells: the cell's own cut chatters, at a lower depth it does not, and n = 60 f/(N k) is quiet at full
