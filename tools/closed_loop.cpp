@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000;     // as the live loop's
 constexpr std::int64_t kBehind_ns = 20'000'000;  // how far a silent tick stays behind the clock, as there
+constexpr std::int64_t kTicksAPoint = 10;
 
 // The daemon without its threads.
 class DataTimeMonitor {
@@ -36,14 +37,23 @@ class DataTimeMonitor {
   void tick(std::int64_t now_ns) {
     pipeline_->core().advance(now_ns - kBehind_ns);
     hand_over();
+    if (++ticks_ % kTicksAPoint != 0) return;
+    const MonitorView& view = pipeline_->core().view();
+    if (view.stamp_ns == 0) return;
+    trace_.push_back({static_cast<double>(view.stamp_ns - machine_.origin_ns()) * 1e-9, view.indicator,
+                      rad_s_to_rpm(view.speed), view.state, view.chatter_frequency_hz});
   }
 
-  Heard heard;
+  // What was heard, with a finer trace than the status messages give.
+  Heard finish() {
+    if (!trace_.empty()) heard_.trace = std::move(trace_);
+    return std::move(heard_);
+  }
 
  private:
   void hand_over() {
     for (const Output& output : pipeline_->core().outputs()) {
-      heard.add(output, machine_.origin_ns());
+      heard_.add(output, machine_.origin_ns());
       if (output.type == Output::Type::correction) machine_.receive(output.correction);
     }
     pipeline_->core().clear_outputs();
@@ -53,6 +63,9 @@ class DataTimeMonitor {
   std::unique_ptr<Pipeline> pipeline_;
   Predictor predictor_;
   PredictionPace pace_;
+  Heard heard_;
+  std::vector<TracePoint> trace_;
+  std::int64_t ticks_ = 0;
 };
 
 }  // namespace
@@ -79,7 +92,7 @@ Heard run_in_data_time(const Cell& cell, VirtualMachine& machine, const std::fun
     next_tick_ns += kTick_ns;
     if (progress && next_tick_ns % (100 * kTick_ns) == 0) progress(machine.time() / duration);
   }
-  return std::move(monitor.heard);
+  return monitor.finish();
 }
 
 }  // namespace stillcut

@@ -39,16 +39,18 @@ plot::Figure hil_figure(const std::string& title, const Cell& cell, const Virtua
   plot::Figure figure = replay_figure(trace_of(title, cell, machine, heard));
   plot::Panel depth, truth;
   depth.title = "Axial depth";
-  depth.y = {.label = "mm", .min = 0.0};
+  depth.y.label = std::string("mm");
   depth.height = 0.5;
   depth.lines = {
       line_over_time(machine, plot::kInk, 1.8, [&](std::size_t i) { return 1e3 * machine.moments()[i].axial_depth; })};
   truth.title = "Motion of the tool point that does not repeat with the spindle: the truth";
-  truth.y = {.label = "µm", .min = 0.1, .logarithmic = true};
+  truth.y.label = "µm";
+  truth.y.logarithmic = true;
   truth.height = 0.9;
-  const std::vector<double>& unrepeated = machine.truth().unrepeated();
-  truth.lines = {line_over_time(machine, plot::kInk, 0.8,
-                                [&](std::size_t i) { return 1e6 * (i < unrepeated.size() ? unrepeated[i] : 0.0); })};
+  const auto& truth_ms = machine.truth().milliseconds();
+  truth.lines = {line_over_time(machine, plot::kInk, 0.8, [&](std::size_t i) {
+    return std::max(0.1, i < truth_ms.size() ? 1e6 * truth_ms[i].peak : 0.0);
+  })};
   truth.limits = {{1e6 * ChatterTruth::kLimit, "chatter, where it does not decay"}};
   for (const ChatterSpell& spell : score.spells)
     truth.bands.push_back(

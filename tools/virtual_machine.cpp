@@ -11,8 +11,9 @@
 namespace stillcut {
 namespace {
 
-constexpr double kMovingStep = 0.01;  // s between two sets of modes while the arm moves
-constexpr double kSpeedRoom = 0.02;   // relative, beyond the spindle's limits: rounding, and the programmed start
+constexpr double kMovingStep = 0.01;                      // s between two sets of modes while the arm moves
+constexpr double kAbruptDepth = 2e-3, kAbruptTurn = 0.5;  // m/s, rad/s
+constexpr double kSpeedRoom = 0.02;  // relative, beyond the spindle's limits: rounding, and the programmed start
 
 double scheduled_value(const Schedule& schedule, double time, double otherwise) {
   return schedule.empty() ? otherwise : value_at(schedule, time);
@@ -162,15 +163,32 @@ MillingConditions VirtualMachine::conditions_at(double time, const RobotState& p
   return conditions;
 }
 
-void VirtualMachine::disturb(double time) {
+// Blows and forces from outside; true when there was one.
+bool VirtualMachine::strike(double time) {
+  bool struck = false;
   Structure& structure = milling_.structure();
   const auto vector = [](const std::array<double, 3>& a) { return Eigen::Vector3d(a[0], a[1], a[2]); };
-  for (; next_knock_ < scenario_.knocks.size() && scenario_.knocks[next_knock_].time <= time; ++next_knock_)
+  for (; next_knock_ < scenario_.knocks.size() && scenario_.knocks[next_knock_].time <= time; ++next_knock_) {
     structure.strike(vector(scenario_.knocks[next_knock_].impulse));
-  for (const OutsideForce& force : scenario_.forces)
-    if (force.span.contains(time))
-      structure.strike(std::sin(kTwoPi * force.frequency_hz * (time - force.span.start)) / sample_rate_hz_ *
-                       vector(force.force));
+    struck = true;
+  }
+  for (const OutsideForce& force : scenario_.forces) {
+    if (!force.span.contains(time)) continue;
+    structure.strike(std::sin(kTwoPi * force.frequency_hz * (time - force.span.start)) / sample_rate_hz_ *
+                     vector(force.force));
+    struck = true;
+  }
+  return struck;
+}
+
+// A change of the cut that sets the structure ringing by itself.
+bool VirtualMachine::changes_abruptly(const MillingConditions& next) const {
+  const MillingConditions& now = milling_.conditions();
+  const double per_second = sample_rate_hz_;
+  return std::abs(next.axial_depth - now.axial_depth) * per_second > kAbruptDepth ||
+         std::abs(next.radial_depth - now.radial_depth) * per_second > kAbruptDepth ||
+         std::abs(next.feed_direction - now.feed_direction) * per_second > kAbruptTurn ||
+         (next.axial_depth > 0.0) != (now.axial_depth > 0.0);
 }
 
 // While a move lasts the modes are those of the posture on the way. A mode's direction has no sign: it keeps the one it
@@ -229,9 +247,9 @@ void VirtualMachine::watch_the_wall(double time) {
 
 double VirtualMachine::roughness() const { return wall_roughness(wall_, 0.5 * tool_.diameter); }
 
-void VirtualMachine::record() {
+void VirtualMachine::record(bool disturbed) {
   const MillingState& s = milling_.state();
-  truth_.add(s.time, s.spindle_angle, s.displacement);
+  truth_.add(s.time, s.spindle_angle, s.displacement, disturbed);
   watch_the_wall(s.time);
   vibration_.push_back(static_cast<float>(s.acceleration.x()));
   const double displacement = s.displacement.norm();
@@ -253,10 +271,11 @@ MachineOutput VirtualMachine::advance() {
   const RobotState program = program_at(time);
   const std::span<const ControllerMessage> messages = controller_.advance(time, program);
   move_structure(time);
-  disturb(time);
   set_sensor_faults(time);
-  const MillingState& state = milling_.advance(conditions_at(time, program));
-  record();
+  const MillingConditions conditions = conditions_at(time, program);
+  const bool struck = strike(time), disturbed = struck || changes_abruptly(conditions);
+  const MillingState& state = milling_.advance(conditions);
+  record(disturbed);
   frames_.clear();
   std::uniform_real_distribution<double> chance;
   for (const CanFrame& frame : encoder_.advance(state.time, state.velocity, state.spindle_speed)) {

@@ -63,10 +63,11 @@ class VirtualMachine {
   [[nodiscard]] RobotState program_at(double time) const;
   [[nodiscard]] MillingConditions conditions_at(double time, const RobotState& program) const;
   [[nodiscard]] Posture posture_at(double time) const;
-  void disturb(double time);
+  [[nodiscard]] bool strike(double time);
+  [[nodiscard]] bool changes_abruptly(const MillingConditions& next) const;
   void move_structure(double time);
   void set_sensor_faults(double time);
-  void record();
+  void record(bool disturbed);
   void watch_the_wall(double time);
 
   Scenario scenario_;
