@@ -32,14 +32,20 @@ struct HilOptions {
   bool shadow = false, json = false, data_time = false, live = false;
 };
 
+struct HilRun {
+  Heard heard;
+  std::optional<TickTimes> ticks;    // of the monitor's loop, where it ran here in real time
+  std::optional<PlantReport> plant;  // in real time
+};
+
 template <class T>
 nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& machine,
-                                  const std::optional<TickTimes>& ticks) {
+nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& machine, const HilRun& run) {
   const bool chatter = !score.spells.empty();
+  const std::optional<TickTimes>& ticks = run.ticks;
   using Json = nlohmann::ordered_json;
   return {{"detected", or_null(score.detected)},
           {"detection_ms", or_null(score.detection_ms)},
@@ -57,7 +63,8 @@ nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& m
           {"chatter_frequency_hz", chatter ? Json(score.spells.front().frequency_hz) : Json(nullptr)},
           {"corrections_refused", machine.controller().refused()},
           {"frames_sent", machine.frames_sent()},
-          {"frames_lost", machine.frames_lost()}};
+          {"frames_lost", machine.frames_lost()},
+          {"behind_ms", run.plant ? Json(std::max(0.0, run.plant->behind_ms)) : Json(nullptr)}};
 }
 
 void print_verdict(const Scenario& scenario, const HilScore& score, bool shadow) {
@@ -88,16 +95,11 @@ void check_can_send(const Cell& cell) {
 
 void say_late(const PlantReport& plant) {
   constexpr double kTolerable_ms = 20.0;  // the monitor bears it
-  if (plant.latest_ms > kTolerable_ms)
-    std::cerr << "stillcut: this machine is too busy: the simulated one was up to " << std::lround(plant.latest_ms)
+  if (plant.behind_ms > kTolerable_ms)
+    std::cerr << "stillcut: this machine is too busy: the simulated one was up to " << std::lround(plant.behind_ms)
               << " ms behind the clock; close other programs, or use hil --data-time\n";
   if (plant.unsent > 0) std::cerr << "stillcut: the CAN bus did not take " << plant.unsent << " frames\n";
 }
-
-struct HilRun {
-  Heard heard;
-  std::optional<TickTimes> ticks;
-};
 
 // Daemon and machine in this process, in real time. They meet on a bus and an LCM network of their own, so that nothing
 // else is needed and nothing real moves, unless the user wants those of the cell.
@@ -118,19 +120,20 @@ HilRun run_live(const Cell& cell, const HilOptions& options, VirtualMachine& mac
     if (output.type != Output::Type::correction) inbox.add(output);
   };
   LiveRun run{cell, bus_name, lcm, live};
-  say_late(run_in_real_time(machine, *bus, lcm, inbox, progress));
+  const PlantReport plant = run_in_real_time(machine, *bus, lcm, inbox, progress);
   std::this_thread::sleep_for(kLastWords);
   run.stop();
-  return {inbox.take_heard(machine.origin_ns()), run.tick_times()};
+  return {inbox.take_heard(machine.origin_ns()), run.tick_times(), plant};
 }
 
 void report(const HilOptions& options, const Cell& cell, const Scenario& scenario, const VirtualMachine& machine,
             const HilRun& run) {
+  if (run.plant) say_late(*run.plant);
   const HilScore score = score_run(machine, run.heard.events);
   if (!options.plot.empty())
     plot::write_figure(hil_figure(scenario.title, cell, machine, run.heard, score), options.plot);
   if (options.json)
-    std::cout << score_json(score, machine, run.ticks).dump() << '\n';
+    std::cout << score_json(score, machine, run).dump() << '\n';
   else
     print_verdict(scenario, score, options.shadow);
   if (run.ticks && !options.json)
@@ -173,10 +176,10 @@ void run_plant(const HilOptions& options) {
                                  MonitorListener::Thread::own};
   VirtualMachine machine{cell, scenario, realtime_ns() + kUntilStart_ns};
   Progress progress{"milling"};
-  say_late(run_in_real_time(machine, *bus, lcm, inbox, [&](double share) { progress.update(share); }));
+  const PlantReport plant = run_in_real_time(machine, *bus, lcm, inbox, [&](double share) { progress.update(share); });
   std::this_thread::sleep_for(kLastWords);
   progress.finish();
-  report(options, cell, scenario, machine, {inbox.take_heard(machine.origin_ns()), {}});
+  report(options, cell, scenario, machine, {inbox.take_heard(machine.origin_ns()), {}, plant});
 }
 
 void add_common_options(CLI::App* command, HilOptions& options) {

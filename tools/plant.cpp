@@ -69,7 +69,7 @@ PlantReport run_in_real_time(VirtualMachine& machine, CanBus& bus, const LcmConn
     if (sent.frames.empty() && sent.messages.empty()) continue;
     const auto due = start + nanoseconds(static_cast<std::int64_t>(machine.time() * 1e9));
     const double late_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - due).count();
-    report.latest_ms = std::max(report.latest_ms, late_ms);
+    report.behind_ms = std::max(report.behind_ms, late_ms);
     if (late_ms < 0.0) std::this_thread::sleep_until(due);
     for (const CanFrame& frame : sent.frames) report.unsent += bus.send(frame) ? 0 : 1;
     for (const ControllerMessage& said : sent.messages) {

@@ -28,7 +28,7 @@ class MonitorInbox {
 
 struct PlantReport {
   std::int64_t unsent = 0;  // frames that the bus did not take
-  double latest_ms = 0.0;   // the most that the machine was behind the clock
+  double behind_ms = 0.0;   // the most that the machine was behind the clock
 };
 
 // Runs the machine from its origin on (CLOCK_REALTIME) to its end. Sends on the calling thread, which asks for a
