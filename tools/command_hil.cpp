@@ -33,6 +33,7 @@ struct HilOptions {
 };
 
 struct HilRun {
+  std::unique_ptr<VirtualMachine> machine;
   Heard heard;
   std::optional<TickTimes> ticks;    // of the monitor's loop, where it ran here in real time
   std::optional<PlantReport> plant;  // in real time
@@ -43,7 +44,8 @@ nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& machine, const HilRun& run) {
+nlohmann::ordered_json score_json(const HilScore& score, const HilRun& run) {
+  const VirtualMachine& machine = *run.machine;
   const bool chatter = !score.spells.empty();
   const std::optional<TickTimes>& ticks = run.ticks;
   using Json = nlohmann::ordered_json;
@@ -103,37 +105,46 @@ void say_late(const PlantReport& plant) {
 
 // Daemon and machine in this process, in real time. They meet on a bus and an LCM network of their own, so that nothing
 // else is needed and nothing real moves, unless the user wants those of the cell.
-HilRun run_live(const Cell& cell, const HilOptions& options, VirtualMachine& machine, MonitorInbox& inbox,
-                const std::function<void(double)>& progress) {
+HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std::function<void(double)>& progress) {
   const std::string own_bus = "local:stillcut-hil-" + std::to_string(getpid());
-  const std::string bus_name = options.live ? cell.can->bus : own_bus;
+  const std::string bus_name = live ? cell.can->bus : own_bus;
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("stillcut", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   spdlog::set_level(spdlog::level::err);
-  const LcmConnection lcm = open_lcm(options.live ? cell.lcm_url : "memq://");
+  const LcmConnection lcm = open_lcm(live ? cell.lcm_url : "memq://");
   const std::unique_ptr<CanBus> bus = open_can_bus(bus_name);
+  MonitorInbox inbox;
   const MonitorListener listener{lcm,
                                  {.on_correction = [&](const Correction& c) { inbox.add(Output{c}); }, .on_event = {}},
                                  MonitorListener::Thread::none};
-  LiveRunOptions live;
-  live.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
+  LiveRunOptions options;
+  options.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
     if (output.type != Output::Type::correction) inbox.add(output);
   };
-  LiveRun run{cell, bus_name, lcm, live};
-  const PlantReport plant = run_in_real_time(machine, *bus, lcm, inbox, progress);
+  LiveRun run{cell, bus_name, lcm, options};
+  auto machine = std::make_unique<VirtualMachine>(cell, scenario, realtime_ns() + kUntilStart_ns);
+  const PlantReport plant = run_in_real_time(*machine, *bus, lcm, inbox, progress);
   std::this_thread::sleep_for(kLastWords);
   run.stop();
-  return {inbox.take_heard(machine.origin_ns()), run.tick_times(), plant};
+  Heard heard = inbox.take_heard(machine->origin_ns());
+  return {std::move(machine), std::move(heard), run.tick_times(), plant};
 }
 
-void report(const HilOptions& options, const Cell& cell, const Scenario& scenario, const VirtualMachine& machine,
-            const HilRun& run) {
+HilRun run_without_clock(const Cell& cell, const Scenario& scenario, const std::function<void(double)>& progress) {
+  HilRun run;
+  run.machine = std::make_unique<VirtualMachine>(cell, scenario, kHilOrigin);
+  run.heard = run_in_data_time(cell, *run.machine, progress);
+  return run;
+}
+
+void report(const HilOptions& options, const Cell& cell, const Scenario& scenario, const HilRun& run) {
+  const VirtualMachine& machine = *run.machine;
   if (run.plant) say_late(*run.plant);
   const HilScore score = score_run(machine, run.heard.events);
   if (!options.plot.empty())
     plot::write_figure(hil_figure(scenario.title, cell, machine, run.heard, score), options.plot);
   if (options.json)
-    std::cout << score_json(score, machine, run).dump() << '\n';
+    std::cout << score_json(score, run).dump() << '\n';
   else
     print_verdict(scenario, score, options.shadow);
   if (run.ticks && !options.json)
@@ -151,15 +162,10 @@ void hil(const HilOptions& options) {
   const Scenario scenario = read_scenario(options.scenario, cell);
   Progress progress{"running"};
   const auto show = [&](double share) { progress.update(share); };
-  VirtualMachine machine{cell, scenario, options.data_time ? kHilOrigin : realtime_ns() + kUntilStart_ns};
-  HilRun run;
-  MonitorInbox inbox;
-  if (options.data_time)
-    run.heard = run_in_data_time(cell, machine, show);
-  else
-    run = run_live(cell, options, machine, inbox, show);
+  const HilRun run =
+      options.data_time ? run_without_clock(cell, scenario, show) : run_live(cell, scenario, options.live, show);
   progress.finish();
-  report(options, cell, scenario, machine, run);
+  report(options, cell, scenario, run);
 }
 
 void run_plant(const HilOptions& options) {
@@ -174,12 +180,13 @@ void run_plant(const HilOptions& options) {
                                  {.on_correction = [&](const Correction& c) { inbox.add(Output{c}); },
                                   .on_event = [&](const Event& e) { inbox.add(Output{e}); }},
                                  MonitorListener::Thread::own};
-  VirtualMachine machine{cell, scenario, realtime_ns() + kUntilStart_ns};
+  auto machine = std::make_unique<VirtualMachine>(cell, scenario, realtime_ns() + kUntilStart_ns);
   Progress progress{"milling"};
-  const PlantReport plant = run_in_real_time(machine, *bus, lcm, inbox, [&](double share) { progress.update(share); });
+  const PlantReport plant = run_in_real_time(*machine, *bus, lcm, inbox, [&](double share) { progress.update(share); });
   std::this_thread::sleep_for(kLastWords);
   progress.finish();
-  report(options, cell, scenario, machine, {inbox.take_heard(machine.origin_ns()), {}, plant});
+  Heard heard = inbox.take_heard(machine->origin_ns());
+  report(options, cell, scenario, {std::move(machine), std::move(heard), {}, plant});
 }
 
 void add_common_options(CLI::App* command, HilOptions& options) {

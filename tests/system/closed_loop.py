@@ -8,9 +8,8 @@ import json
 import re
 import shutil
 
-from scenario import main, require
+from scenario import Failed, main, require
 
-ATTEMPTS = 3
 STALL = 40  # ms: from 50 ms on the monitor rightly calls samples lost
 
 TWO_PROCESSES = """
@@ -47,15 +46,18 @@ def score_of(folder, name):
     return score
 
 
-def undisturbed(attempt):
-    """Runs attempt(), which returns scores; again where this machine kept the plant waiting."""
-    for _ in range(ATTEMPTS):
-        scores = attempt()
-        behind = max(score["behind_ms"] for score in scores)
-        if behind < STALL:
-            return scores
-        print(f"   this machine kept the plant waiting for {behind:.0f} ms")
-    require(False, "this machine is too busy for a test in real time")
+def unless_disturbed(attempt):
+    """Runs attempt(scores), which appends its scores and checks them; what fails while this machine kept the plant waiting
+    is tried again."""
+    for last in (False, False, True):
+        scores = []
+        try:
+            return attempt(scores)
+        except Failed:
+            behind = max((score["behind_ms"] for score in scores), default=0)
+            if last or behind < STALL:
+                raise
+            print(f"   this machine kept the plant waiting for {behind:.0f} ms: once more")
 
 
 def heard_and_corrected(score):
@@ -66,33 +68,36 @@ def heard_and_corrected(score):
 
 
 def local(folder):
-    def attempt():
+    def attempt(scores):
         out = folder.stillcut("hil", "examples/demo-cell/cell.toml", "--scenario",
                               "examples/scenarios/depth-step.toml", "--json")
         print("  ", out.strip())
-        return [json.loads(out)]
+        score = json.loads(out)
+        scores.append(score)
+        heard_and_corrected(score)
+        require(score["chatter_spells"] >= 1 and score["frames_lost"] == 0, "a run without faults lost frames")
+        for tick in ("tick_p50_us", "tick_p9999_us", "tick_max_us"):
+            require(score[tick] > 0, f"{tick} is missing")
 
-    score = undisturbed(attempt)[0]
-    heard_and_corrected(score)
-    require(score["chatter_spells"] >= 1 and score["frames_lost"] == 0, "a run without faults lost frames")
-    for tick in ("tick_p50_us", "tick_p9999_us", "tick_max_us"):
-        require(score[tick] > 0, f"{tick} is missing")
+    unless_disturbed(attempt)
 
 
 def vcan(folder):
-    def attempt():
+    def attempt(scores):
         folder.in_guest(TWO_PROCESSES + ONE_PROCESS + """
             run stable-cut cell/live.toml
             run refusing-controller cell/live.toml
             """)
-        names = ("plant.json", "stable-cut.json", "refusing-controller.json")
-        return [score_of(folder, name) for name in names]
+        for name in ("plant.json", "stable-cut.json", "refusing-controller.json"):
+            scores.append(score_of(folder, name))
+        plant, stable, refused = scores
+        heard_and_corrected(plant)
+        require(folder.daemon_summary()["kernel_dropped"] == 0, "the kernel dropped frames of the plant")
+        require(folder.daemon_summary()["frames"] == plant["frames_sent"], "not every frame of the plant was heard")
+        require(stable["detected"] is None and stable["corrections"] == 0, "a stable cut was corrected")
+        require(refused["detected"] is True and refused["corrections_refused"] >= 1, "nothing was refused")
 
-    plant, stable, refused = undisturbed(attempt)
-    heard_and_corrected(plant)
-    require(folder.daemon_summary()["frames_lost"] == 0, "the daemon missed frames of the plant")
-    require(stable["detected"] is None and stable["corrections"] == 0, "a stable cut was corrected")
-    require(refused["detected"] is True and refused["corrections_refused"] >= 1, "nothing was refused")
+    unless_disturbed(attempt)
 
 
 def every(folder):
