@@ -13,9 +13,11 @@
 #include "drivers/lcm/monitor_listener.hpp"
 #include "tools/closed_loop.hpp"
 #include "tools/commands.hpp"
+#include "tools/event_csv.hpp"
 #include "tools/hil_score.hpp"
 #include "tools/live_loop.hpp"
 #include "tools/live_run.hpp"
+#include "tools/output_file.hpp"
 #include "tools/plant.hpp"
 #include "tools/plot_hil.hpp"
 #include "tools/progress.hpp"
@@ -28,7 +30,7 @@ constexpr std::int64_t kUntilStart_ns = 300'000'000;            // real time: fo
 constexpr std::chrono::milliseconds kLastWords{200};            // for what is still on its way at the end
 
 struct HilOptions {
-  std::string cell, scenario, plot;
+  std::string cell, scenario, plot, events;
   bool shadow = false, json = false, data_time = false, live = false;
 };
 
@@ -137,12 +139,24 @@ HilRun run_without_clock(const Cell& cell, const Scenario& scenario, const std::
   return run;
 }
 
+void check_outputs(const HilOptions& options) {
+  if (options.json && options.events == "-")
+    throw CLI::ValidationError("--events", "'-' and --json both want standard output; name a file for the events");
+  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+}
+
 void report(const HilOptions& options, const Cell& cell, const Scenario& scenario, const HilRun& run) {
   const VirtualMachine& machine = *run.machine;
   if (run.plant) say_late(*run.plant);
   const HilScore score = score_run(machine, run.heard.events);
   if (!options.plot.empty())
     plot::write_figure(hil_figure(scenario.title, cell, machine, run.heard, score), options.plot);
+  if (!options.events.empty()) {
+    OutputFile file{options.events};
+    write_event_header(file.stream());
+    for (const Event& event : run.heard.events) write_event(file.stream(), event, machine.origin_ns());
+    file.finish();
+  }
   if (options.json)
     std::cout << score_json(score, run).dump() << '\n';
   else
@@ -155,7 +169,7 @@ void report(const HilOptions& options, const Cell& cell, const Scenario& scenari
 void hil(const HilOptions& options) {
   if (options.data_time && options.live)
     throw CLI::ValidationError("--live", "--data-time has neither bus nor LCM; leave one of the two out");
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  check_outputs(options);
   Cell cell = read_cell(options.cell, {.bus = options.live});
   if (options.live) check_can_send(cell);
   cell.mode = options.shadow ? RuntimeMode::shadow : RuntimeMode::active;
@@ -169,7 +183,7 @@ void hil(const HilOptions& options) {
 }
 
 void run_plant(const HilOptions& options) {
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
+  check_outputs(options);
   const Cell cell = read_cell(options.cell);
   check_can_send(cell);
   const Scenario scenario = read_scenario(options.scenario, cell);
@@ -193,6 +207,7 @@ void add_common_options(CLI::App* command, HilOptions& options) {
   command->add_option("CELL", options.cell, "cell file")->required();
   command->add_option("--scenario", options.scenario, "what is cut and what goes wrong (TOML)")->required();
   command->add_option("--plot", options.plot, "draw the run to a .svg or .png file");
+  command->add_option("--events", options.events, "write what the monitor told as CSV");
   command->add_flag("--json", options.json, "print one JSON object");
 }
 
