@@ -261,7 +261,7 @@ void LiveRun::Parts::stop() {
   if (recorder) recorder->finish();
 }
 
-LiveRun::LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, LiveRunOptions options)
+LiveRun::LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, const LiveRunOptions& options)
     : parts_{std::make_unique<Parts>(cell, live_bus(bus), lcm, options)} {}
 
 LiveRun::~LiveRun() { parts_->stop(); }

@@ -31,7 +31,7 @@ struct TickTimes {
 class LiveRun {
  public:
   // Starts; `bus` is the cell's or another. Throws InputError and ComponentError.
-  LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, LiveRunOptions options);
+  LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, const LiveRunOptions& options);
   ~LiveRun();  // stops
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;

@@ -39,7 +39,7 @@ class VirtualController {
  private:
   struct Heard {
     Correction correction;
-    double acts_from, expires;
+    double acts_from = 0.0, expires = 0.0;
   };
   void cycle(double time, const RobotState& program);
   void act_on(const Heard& heard, double time, const RobotState& program);
