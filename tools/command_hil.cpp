@@ -157,11 +157,10 @@ void report(const HilOptions& options, const Cell& cell, const Scenario& scenari
     for (const Event& event : run.heard.events) write_event(file.stream(), event, machine.origin_ns());
     file.finish();
   }
-  if (options.json)
-    std::cout << score_json(score, run).dump() << '\n';
-  else
-    print_verdict(scenario, score, options.shadow);
-  if (run.ticks && !options.json)
+  if (options.json) std::cout << score_json(score, run).dump() << '\n';
+  if (options.json || options.events == "-") return;
+  print_verdict(scenario, score, options.shadow);
+  if (run.ticks)
     std::printf("  tick %.0f µs (median), %.0f µs (99.99 %%), %.0f µs (longest)\n", run.ticks->p50_us,
                 run.ticks->p9999_us, run.ticks->max_us);
 }
