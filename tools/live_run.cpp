@@ -212,13 +212,11 @@ struct LiveRun::Parts {
 
 LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm,
                       const LiveRunOptions& options)
-    : pipeline{cell},
-      predictor{cell},
-      bus{open_can_bus(bus_name, pipeline.decoder().ids_used())},
-      publisher{*channels, lcm, options.events, cell.mode, options.on_output} {
+    : pipeline{cell}, predictor{cell}, publisher{*channels, lcm, options.events, cell.mode, options.on_output} {
   const NominalPrediction prediction = predictor.nominal();
   if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
   pipeline.core().add_lobes(prediction.diagram);
+  bus = open_can_bus(bus_name, pipeline.decoder().ids_used());  // last, so that no frame waits for the prediction
   if (!options.record.empty()) recorder.emplace(*channels, options.record, interface_name(bus_name));
   model = std::jthread{[this](const std::stop_token& stop) { run_model(stop); }};
   RobotHandlers handlers;
