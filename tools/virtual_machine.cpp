@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "drivers/can/dbc.hpp"
 #include "tools/cell_posture.hpp"
@@ -32,7 +33,19 @@ Cut start_cut(const Cell& cell, const Scenario& scenario) {
   return cut;
 }
 
+// A mode that some postures lack would appear or vanish on the way.
+void check_moves(const DynamicsMap& map, const Scenario& scenario) {
+  for (const Posture& posture : map.postures)
+    if (!scenario.moves.empty() && posture.modes.size() != map.postures.front().modes.size())
+      throw InputError(scenario.file.string(), 0,
+                       "posture_move: the map has " + std::to_string(map.postures.front().modes.size()) +
+                           " modes at posture " + map.postures.front().id + " and " +
+                           std::to_string(posture.modes.size()) + " at " + posture.id +
+                           "; a move needs the same modes everywhere");
+}
+
 std::vector<Posture> stations_of(const Cell& cell, const DynamicsMap& map, const Scenario& scenario) {
+  check_moves(map, scenario);
   std::vector<Posture> stations{posture_of(cell, map, scenario.posture)};
   for (const PostureMove& move : scenario.moves) stations.push_back(find_posture(map, move.to));
   return stations;
@@ -200,8 +213,7 @@ void VirtualMachine::move_structure(double time) {
   if (!moving || time < next_posture_s_) return;
   next_posture_s_ = time + kMovingStep;
   std::vector<Mode> modes = predict_posture(map_, posture_at(time), interpolation_).posture.modes;
-  if (modes.size() != modes_.size())
-    throw std::runtime_error("the map has not the same modes at all postures of a move");
+  if (modes.size() != modes_.size()) throw std::runtime_error("a mode of the map is lost on the way between postures");
   for (std::size_t m = 0; m < modes.size(); ++m) {
     double along = 0.0;
     for (std::size_t i = 0; i < 3; ++i) along += modes[m].direction[i] * modes_[m].direction[i];

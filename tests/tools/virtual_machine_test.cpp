@@ -8,6 +8,7 @@
 #include <complex>
 
 #include "drivers/can/decoder.hpp"
+#include "tests/tools/run_program.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
@@ -123,6 +124,21 @@ TEST(VirtualMachine, RefusesNotANumberFromASensorOfWholeNumbers) {
   Scenario scenario = sound_cut(0.5);
   scenario.sensor_faults = {{{0.2, 0.4}, SensorFaultKind::nan, 0, 0.0, 12}};
   EXPECT_THROW((VirtualMachine{machine_cell(), scenario, kMachineOrigin}), InputError);
+}
+
+TEST(VirtualMachine, RefusesToMoveOnAMapThatLacksModes) {
+  const TempFolder folder;
+  std::filesystem::copy(EXAMPLES "/demo-cell", folder.path(), std::filesystem::copy_options::recursive);
+  std::string modes = content_of(folder.path() / "map/modes.csv");
+  modes.erase(modes.find("far,3"), modes.find("far,4") - modes.find("far,3"));
+  (void)folder.write("map/modes.csv", modes);
+  Scenario scenario = sound_cut(0.5);
+  scenario.moves = {{{0.1, 0.2}, "left"}};
+  const Cell cell = read_cell(folder.path() / "cell.toml", {.bus = false});
+  EXPECT_NE(message_of<InputError>([&] {
+              VirtualMachine{cell, scenario, kMachineOrigin};
+            }).find("same modes"),
+            std::string::npos);
 }
 
 TEST(VirtualMachine, AKnockMovesTheToolAsItsImpulseSays) {
