@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -120,9 +119,8 @@ VirtualMachine::VirtualMachine(const Cell& cell, const Scenario& scenario, std::
                   origin_ns},
       modes_{predict_posture(map_, stations_.front(), interpolation_).posture.modes},
       random_{scenario.seed},
-      wall_passes_(static_cast<std::size_t>(tool_.teeth), 0) {
+      wall_{tool_, milling_.conditions().feed_direction} {
   check_nan(scenario_, encoder_);
-  start_direction_ = milling_.conditions().feed_direction;
   std::sort(scenario_.knocks.begin(), scenario_.knocks.end(),
             [](const Knock& a, const Knock& b) { return a.time < b.time; });
 }
@@ -236,33 +234,10 @@ void VirtualMachine::set_sensor_faults(double time) {
   encoder_.set_faults(now);
 }
 
-// The wall stands on the side where down-milling teeth leave the part and up-milling teeth enter it: phi = pi or 0.
-void VirtualMachine::watch_the_wall(double time) {
-  const MillingState& s = milling_.state();
-  const double side = cut_.milling == Milling::up ? 0.0 : std::numbers::pi;
-  const double feed = milling_.conditions().feed_direction;
-  const double feed_rate = milling_.conditions().feed_per_tooth * tool_.teeth * s.spindle_speed / kTwoPi;
-  along_ += feed_rate / sample_rate_hz_;
-  const double turned = s.spindle_angle + feed - start_direction_;
-  double tooth_angle = 0.0;
-  for (std::size_t t = 0; t < wall_passes_.size(); tooth_angle += tool_.pitch[t], ++t) {
-    const auto passes = static_cast<std::int64_t>(std::floor((turned + tooth_angle - side) / kTwoPi));
-    if (passes == wall_passes_[t]) continue;
-    wall_passes_[t] = passes;
-    if (s.axial_depth <= 0.0 || time <= 0.0) continue;
-    const double outward = side == 0.0 ? 1.0 : -1.0;  // cross-feed axis: (-sin, cos) of the feed direction
-    const double reach = outward * (-std::sin(feed) * s.displacement.x() + std::cos(feed) * s.displacement.y()) +
-                         tool_.runout * std::cos(tooth_angle - tool_.runout_angle);
-    wall_.push_back({along_, reach});
-  }
-}
-
-double VirtualMachine::roughness() const { return wall_roughness(wall_, 0.5 * tool_.diameter); }
-
 void VirtualMachine::record(bool disturbed) {
   const MillingState& s = milling_.state();
   truth_.add(s.time, s.spindle_angle, s.displacement, disturbed);
-  watch_the_wall(s.time);
+  wall_.add(s, milling_.conditions(), 1.0 / sample_rate_hz_);
   vibration_.push_back(static_cast<float>(s.acceleration.x()));
   const double displacement = s.displacement.norm();
   peak_displacement_ = std::max(peak_displacement_, displacement);

@@ -13,9 +13,9 @@
 #include "models/chatter_truth.hpp"
 #include "models/interpolation.hpp"
 #include "models/milling_simulation.hpp"
-#include "models/wall_roughness.hpp"
 #include "tools/can_encoder.hpp"
 #include "tools/virtual_controller.hpp"
+#include "tools/wall_recorder.hpp"
 
 namespace stillcut {
 
@@ -55,7 +55,7 @@ class VirtualMachine {
   [[nodiscard]] const std::vector<float>& vibration() const { return vibration_; }  // m/s^2, x, one a sample
   [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
   [[nodiscard]] double peak_displacement() const { return peak_displacement_; }  // m
-  [[nodiscard]] double roughness() const;                                        // m, of the wall cut so far; NaN: none
+  [[nodiscard]] double roughness() const { return wall_.roughness(); }           // m, of the wall; NaN: none
   [[nodiscard]] std::int64_t frames_sent() const { return frames_sent_; }
   [[nodiscard]] std::int64_t frames_lost() const { return frames_lost_; }
 
@@ -68,7 +68,6 @@ class VirtualMachine {
   void move_structure(double time);
   void set_sensor_faults(double time);
   void record(bool disturbed);
-  void watch_the_wall(double time);
 
   Scenario scenario_;
   Tool tool_;
@@ -88,10 +87,8 @@ class VirtualMachine {
 
   std::vector<CanFrame> frames_;
   std::int64_t samples_ = 0, frames_sent_ = 0, frames_lost_ = 0;
-  double peak_displacement_ = 0.0, along_ = 0.0;  // m
-  double start_direction_ = 0.0;                  // rad, of the feed
-  std::vector<std::int64_t> wall_passes_;         // of each tooth so far
-  std::vector<ToothPass> wall_;
+  double peak_displacement_ = 0.0;  // m
+  WallRecorder wall_;
   ChatterTruth truth_;
   std::vector<MachineMoment> moments_;
   std::vector<float> vibration_;
