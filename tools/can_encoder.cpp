@@ -33,6 +33,27 @@ void select(CanFrame& frame, const std::optional<MultiplexCondition>& multiplex)
   if (multiplex) write_bits(frame.data.data(), multiplex->bits, multiplex->value);
 }
 
+// What a sensor sends instead of `value`; all in its unit.
+double faulty(const std::optional<SensorFault>& fault, double value, double last, const SignalPlan& signal,
+              double unit_m_per_s2) {
+  if (!fault) return value;
+  switch (fault->kind) {
+    case SensorFaultKind::stuck:
+      return last;
+    case SensorFaultKind::saturated:
+      return signal.high;
+    case SensorFaultKind::offset:
+      return value + fault->offset / unit_m_per_s2;
+    case SensorFaultKind::nan:
+      return std::nan("");
+    case SensorFaultKind::dead:
+      return 0.0;
+    case SensorFaultKind::silent:
+      break;
+  }
+  return value;
+}
+
 }  // namespace
 
 CanEncoder::CanEncoder(const Dbc& dbc, const CanSettings& can, const std::string& cell_file, SensorNoise noise,
@@ -76,6 +97,22 @@ void CanEncoder::send(std::size_t message, double time) {
   due_.push_back(frames_[message]);
 }
 
+bool CanEncoder::can_send_nan() const {
+  const auto is_float = [](const SignalPlan& signal) {
+    return signal.type == ValueType::float32 || signal.type == ValueType::float64;
+  };
+  return std::all_of(plan_.sensors.begin(), plan_.sensors.end(), [&](const SensorPlan& sensor) {
+    return std::all_of(sensor.axis.begin(), sensor.axis.end(), [&](const AxisPlan& axis) {
+      return std::all_of(axis.samples.begin(), axis.samples.end(), is_float);
+    });
+  });
+}
+
+bool CanEncoder::is_sensor_frame(const CanFrame& frame) const {
+  return std::any_of(plan_.sensors.begin(), plan_.sensors.end(),
+                     [&](const SensorPlan& sensor) { return sensor.id == frame.id; });
+}
+
 void CanEncoder::sample(Sensor& sensor, const Eigen::Vector3d& velocity) {
   const Eigen::Vector3d tool_acceleration = (velocity - sensor.velocity) * sensor.sample_rate_hz;
   sensor.velocity = velocity;
@@ -86,7 +123,9 @@ void CanEncoder::sample(Sensor& sensor, const Eigen::Vector3d& velocity) {
     for (std::size_t tool = 0; tool < kMaxAxes; ++tool)  // the rotation's transpose: tool to sensor frame
       acceleration += sensor.plan.rotation[tool][axis] * tool_acceleration[static_cast<Eigen::Index>(tool)];
     const SignalPlan& signal = sensor.plan.axis[axis].samples[index];
-    const double value = acceleration / sensor.plan.unit_m_per_s2;
+    const double value = faulty(faults_.axis[axis], acceleration / sensor.plan.unit_m_per_s2, sensor.last[axis], signal,
+                                sensor.plan.unit_m_per_s2);
+    sensor.last[axis] = value;
     if (value <= signal.low || value >= signal.high) ++saturated_;
     put(frames_[sensor.message], signal, value);
   }
@@ -108,7 +147,7 @@ std::span<const CanFrame> CanEncoder::advance(double time, const Eigen::Vector3d
     while (static_cast<double>(sensor.samples + 1) / sensor.sample_rate_hz <= time) {
       const double at = static_cast<double>(sensor.samples + 1) / sensor.sample_rate_hz;
       sample(sensor, velocity_ + part_at(at) * (velocity - velocity_));
-      if (sensor.samples % sensor.plan.samples != 0) continue;
+      if (sensor.samples % sensor.plan.samples != 0 || faults_.silent) continue;
       CanFrame& frame = frames_[sensor.message];
       select(frame, sensor.plan.multiplex);
       if (sensor.plan.counter) write_bits(frame.data.data(), *sensor.plan.counter, sensor.counter++);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drivers/can/decode_plan.hpp"
+#include "drivers/files/scenario.hpp"
 #include "rt/can_frame.hpp"
 
 namespace stillcut {
@@ -17,6 +18,12 @@ namespace stillcut {
 struct SensorNoise {
   double rms = 0.0;  // m/s^2, white, on every axis
   std::uint64_t seed = 1;
+};
+
+// What is wrong with the sensors just now.
+struct SensorFaults {
+  std::array<std::optional<SensorFault>, kMaxAxes> axis;  // of every accelerometer, its own axes
+  bool silent = false;                                    // they send nothing
 };
 
 class CanEncoder {
@@ -33,6 +40,14 @@ class CanEncoder {
   // sensor's filter this keeps what is far above the sample rate out of the signal.
   std::span<const CanFrame> advance(double time, const Eigen::Vector3d& velocity, double spindle_speed);
 
+  // From now on.
+  void set_faults(const SensorFaults& faults) { faults_ = faults; }
+
+  // Whether all samples are floating-point numbers, so that a sensor could send "not a number".
+  [[nodiscard]] bool can_send_nan() const;
+  // Whether a frame is a sensor's and not the spindle's.
+  [[nodiscard]] bool is_sensor_frame(const CanFrame& frame) const;
+
   // Samples that stood at the end of the sensor's range.
   [[nodiscard]] std::int64_t saturated() const { return saturated_; }
 
@@ -44,6 +59,7 @@ class CanEncoder {
     std::int64_t samples = 0;                            // taken so far
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // at the last sample
     std::uint64_t counter = 0;
+    std::array<double, kMaxAxes> last{};  // what it sent, in its unit
   };
 
   std::size_t frame_of(const Dbc& dbc, std::uint32_t id);
@@ -59,6 +75,7 @@ class CanEncoder {
   std::int64_t spindle_sent_ = 0;
   std::vector<CanFrame> due_;
 
+  SensorFaults faults_;
   SensorNoise noise_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;

@@ -45,8 +45,10 @@ int run_stillcut(int argc, char** argv) {
   CLI::App app{"Stillcut: chatter monitor and compensator for robots that mill", "stillcut"};
   app.require_subcommand(1);
   app.set_version_flag("--version", STILLCUT_VERSION);
+  add_hil_command(app);
   add_lobes_command(app);
   add_map_command(app);
+  add_plant_command(app);
   add_replay_command(app);
   add_simulate_command(app);
   add_stability_command(app);

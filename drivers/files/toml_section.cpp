@@ -99,6 +99,20 @@ std::vector<std::array<double, 2>> TomlSection::points(std::string_view key) {
   return node != nullptr ? points_in(key, *node) : std::vector<std::array<double, 2>>{};
 }
 
+std::vector<std::array<double, 2>> TomlSection::pairs(std::string_view key, Bounds first, Bounds second) {
+  std::vector<std::array<double, 2>> pairs;
+  const toml::node* node = find(key, false);
+  if (node == nullptr) return pairs;
+  const std::string wanted = "a list of pairs, [[a, b], [a, b]]";
+  if (!node->is_array() || node->as_array()->empty()) fail_type(key, *node, wanted);
+  for (const toml::node& element : *node->as_array()) {
+    const toml::array* pair = element.as_array();
+    if (pair == nullptr || pair->size() != 2) fail(key, "an entry is not a pair of numbers; give " + wanted);
+    pairs.push_back({checked_number(key, (*pair)[0], first), checked_number(key, (*pair)[1], second)});
+  }
+  return pairs;
+}
+
 std::vector<std::vector<std::array<double, 2>>> TomlSection::lists_of_points(std::string_view key) {
   std::vector<std::vector<std::array<double, 2>>> lists;
   if (const toml::node* node = find(key, false)) {

@@ -46,8 +46,9 @@ class TomlSection {
 
   // Lists; empty when the key is absent.
   std::vector<double> numbers(std::string_view key, Bounds bounds);
-  std::vector<std::array<double, 2>> points(std::string_view key);                        // [[x, y], ...]
-  std::vector<std::vector<std::array<double, 2>>> lists_of_points(std::string_view key);  // [[[x, y], ...], ...]
+  std::vector<std::array<double, 2>> points(std::string_view key);                              // [[x, y], ...]
+  std::vector<std::array<double, 2>> pairs(std::string_view key, Bounds first, Bounds second);  // [[a, b], ...]
+  std::vector<std::vector<std::array<double, 2>>> lists_of_points(std::string_view key);        // [[[x, y], ...], ...]
 
   // Tables within this one; they are finished on their own.
   std::optional<TomlSection> table(std::string_view key);

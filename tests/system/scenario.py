@@ -41,6 +41,7 @@ class Folder:
     """A scratch folder with the programs, the guest's helpers, and a cell that listens to vcan0 as live.toml."""
 
     def __init__(self, options):
+        self.examples = options.cell.resolve().parent.parent
         self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system."))
         for file in (options.programs / "stillcut", options.programs / "stillcutd", HERE / "guest.sh"):
             shutil.copy(file, self.path)

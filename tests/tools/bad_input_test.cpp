@@ -128,6 +128,37 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"picture_kind", nothing, with(kReplay, {"--plot", "p.txt", "--json"}), 3, "p.txt: ", ".svg"}),
     [](const auto& test) { return std::string(test.param.name); });
 
+const std::string kScenario = "cell = \"cell.toml\"\nduration_s = 1\n";
+const std::vector<std::string> kHil{"stillcut", "hil", "cell.toml", "--scenario", "run.toml", "--data-time", "--json"};
+const std::vector<std::string> kPlant{"stillcut", "plant", "cell.toml", "--scenario", "run.toml", "--json"};
+
+std::function<void(const DemoCell&)> scenario(std::string more) {
+  return [=](const DemoCell& cell) { (void)cell.write("run.toml", kScenario + more); };
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenarios, BadInput,
+    ::testing::Values(Refusal{"missing", nothing, kHil, 3, "run.toml: ", "no such file"},
+                      Refusal{"unknown_key", scenario("[program]\ndepth_mm = [[0, 1]]\n"), kHil, 3,
+                              "run.toml:4: program.depth_mm: ", ""},
+                      Refusal{"after_the_end", scenario("[program]\naxial_depth_mm = [[0, 1], [2, 3]]\n"), kHil, 3,
+                              "run.toml:4: program.axial_depth_mm: ", "after the end"},
+                      Refusal{"unknown_posture", scenario("[program]\nposture = \"away\"\n"), kPlant, 3,
+                              "run.toml:4: program.posture: ", "away"},
+                      Refusal{"no_number_from_integers", scenario("[[sensor_fault]]\nstart_s = 0\nkind = \"nan\"\n"),
+                              kHil, 3, "run.toml:3: sensor_fault.kind: ", "whole numbers"},
+                      Refusal{"bus_missing", scenario(""), kPlant, 4, "", "can0"},
+                      Refusal{"bus_is_a_log",
+                              [](const DemoCell& cell) {
+                                scenario("")(cell);
+                                cell.change("socketcan:can0", "log:cut.log");
+                              },
+                              kPlant, 3, "cell.toml:37: can.bus: ", "log"},
+                      Refusal{"live_without_time", scenario(""), with(kHil, {"--live"}), 2, "", "--live"},
+                      Refusal{"two_for_stdout", scenario(""), with(kHil, {"--events", "-"}), 2, "", "--events"},
+                      Refusal{"picture_kind", scenario(""), with(kHil, {"--plot", "p.txt"}), 3, "p.txt: ", ".svg"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
 INSTANTIATE_TEST_SUITE_P(
     Usage, BadInput,
     ::testing::Values(Refusal{"unknown_option", nothing, with(kReplay, {"--nonsense"}), 2, "", "--nonsense"},

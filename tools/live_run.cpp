@@ -1,0 +1,163 @@
+#include "tools/live_run.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "drivers/lcm/subscriber.hpp"
+#include "rt/periodic.hpp"
+#include "rt/syscall_filter.hpp"
+#include "rt/thread.hpp"
+#include "tools/live_loop.hpp"
+#include "tools/live_outputs.hpp"
+#include "tools/predictor.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr std::chrono::milliseconds kPollModel{5};
+
+// Where the bus name ends in a log, it is played in real time: a daemon lives in real time.
+std::string live_bus(const std::string& bus) {
+  const bool is_log = bus.starts_with("log:");
+  return is_log && bus.find("?speed=") == std::string::npos ? bus + "?speed=1" : bus;
+}
+
+std::string interface_name(const std::string& bus) {
+  if (bus.starts_with("socketcan:")) return bus.substr(10);
+  return "can0";
+}
+
+nlohmann::ordered_json summary_json(const Pipeline& pipeline, const CanBus& bus, const LoopChannels& channels,
+                                    const LoopStatistics& loop, const PublisherThread& publisher) {
+  const BusCounters can = bus.counters();
+  const LatencySummary wake = loop.wakeup.summary(), tick = loop.execution.summary();
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  return {{"frames", pipeline.core().counters().frames},
+          {"frames_lost", pipeline.core().counters().frames_lost},
+          {"frames_bad", can.frames_bad + pipeline.decoder().counters().frames_bad},
+          {"frames_out_of_order", pipeline.core().counters().frames_out_of_order},
+          {"kernel_dropped", can.dropped},
+          {"error_frames", can.error_frames},
+          {"bus_off", can.bus_off},
+          {"reopened", can.reopened},
+          {"chatter_onsets", publisher.tally().chatter_onsets},
+          {"corrections", publisher.tally().corrections},
+          {"faults", publisher.tally().faults},
+          {"published", publisher.publisher().sent()},
+          {"publish_failed", publisher.publisher().failed()},
+          {"outputs_dropped", channels.outputs.refused()},
+          {"record_dropped", channels.recorded.refused()},
+          {"ticks", loop.ticks.load()},
+          {"overruns", loop.overruns.load()},
+          {"wakeup_p50_us", us(wake.p50_ns)},
+          {"wakeup_p99_us", us(wake.p99_ns)},
+          {"wakeup_max_us", us(wake.max_ns)},
+          {"tick_p50_us", us(tick.p50_ns)},
+          {"tick_p9999_us", us(tick.p9999_ns)},
+          {"tick_max_us", us(tick.max_ns)}};
+}
+
+const char* mode_name(RuntimeMode mode) {
+  if (mode == RuntimeMode::active) return "active";
+  return mode == RuntimeMode::shadow ? "shadow" : "off";
+}
+
+}  // namespace
+
+// Order matters: what is declared first outlives the threads that use it.
+struct LiveRun::Parts {
+  Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm, const LiveRunOptions& options);
+  void run_model(const std::stop_token& stop);
+  void stop();
+
+  Pipeline pipeline;
+  Predictor predictor;
+  std::unique_ptr<CanBus> bus;
+  std::unique_ptr<LoopChannels> channels = std::make_unique<LoopChannels>();
+  PublisherThread publisher;
+  std::optional<RecorderThread> recorder;
+  Snapshot<RobotState> newest_state;  // now and then a state is for the model thread, every message for the loop
+  PredictionPace pace;                // the subscriber thread's
+  std::jthread model;
+  std::optional<Subscriber> subscriber;
+  std::optional<LoopSyscallFilter> audit;
+  std::atomic<bool> stop_loop{false}, loop_ended{false};
+  LoopStatistics statistics;
+  std::optional<LiveLoop> live;
+  std::optional<RealTimeThread> loop;
+  bool stopped = false;
+};
+
+LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm,
+                      const LiveRunOptions& options)
+    : pipeline{cell}, predictor{cell}, publisher{*channels, lcm, options.events, cell.mode, options.on_output} {
+  const NominalPrediction prediction = predictor.nominal();
+  if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
+  pipeline.core().add_lobes(prediction.diagram);
+  bus = open_can_bus(bus_name, pipeline.decoder().ids_used());  // last, so that no frame waits for the prediction
+  if (!options.record.empty()) recorder.emplace(*channels, options.record, interface_name(bus_name));
+  model = std::jthread{[this](const std::stop_token& stop) { run_model(stop); }};
+  RobotHandlers handlers;
+  handlers.on_state = [this](const RobotState& state) {
+    (void)channels->messages.push(state);
+    if (pace.due(state)) newest_state.publish(state);
+  };
+  handlers.on_ack = [this](const CorrectionAck& ack) { (void)channels->messages.push(ack); };
+  handlers.on_bad = [](std::string_view channel, const char* why) { spdlog::warn("{}: {}", channel, why); };
+  subscriber.emplace(lcm, realtime_ns, handlers);
+
+  if (options.audit) audit.emplace();
+  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder.has_value());
+  publisher.start();
+  loop.emplace(RealTimeSettings{.priority = options.priority, .cpu = options.cpu}, [this] {
+    if (audit && audit->install() != 0) std::abort();
+    run_periodic(kLoopPeriodNs, stop_loop, statistics, [this](std::int64_t) noexcept { return live->tick(); });
+    if (audit) audit->release();
+    loop_ended.store(true, std::memory_order_release);
+  });
+  if (!loop->report().complete()) spdlog::warn("not fully real-time: {}", loop->report().reasons);
+  spdlog::info("stillcutd runs: {} on {}, mode {}", cell.file.string(), bus_name, mode_name(cell.mode));
+}
+
+void LiveRun::Parts::run_model(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    if (newest_state.update()) {
+      if (const auto diagram = predictor.at(newest_state.value())) channels->lobes.publish(*diagram);
+    }
+    std::this_thread::sleep_for(kPollModel);
+  }
+}
+
+void LiveRun::Parts::stop() {
+  if (stopped) return;
+  stopped = true;
+  stop_loop.store(true, std::memory_order_release);
+  loop->join();
+  publisher.finish();
+  if (recorder) recorder->finish();
+}
+
+LiveRun::LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, const LiveRunOptions& options)
+    : parts_{std::make_unique<Parts>(cell, live_bus(bus), lcm, options)} {}
+
+LiveRun::~LiveRun() { parts_->stop(); }
+
+bool LiveRun::ended() const { return parts_->loop_ended.load(std::memory_order_acquire); }
+
+void LiveRun::stop() { parts_->stop(); }
+
+nlohmann::ordered_json LiveRun::summary() const {
+  return summary_json(parts_->pipeline, *parts_->bus, *parts_->channels, parts_->statistics, parts_->publisher);
+}
+
+TickTimes LiveRun::tick_times() const {
+  const LatencySummary tick = parts_->statistics.execution.summary();
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  return {us(tick.p50_ns), us(tick.p9999_ns), us(tick.max_ns)};
+}
+
+}  // namespace stillcut

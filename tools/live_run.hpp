@@ -1,0 +1,54 @@
+// The monitor live on one cell: the real-time loop and the ordinary threads about it (publisher, recorder, model,
+// subscriber), from construction until stop(). The daemon runs one; `stillcut hil` runs one beside a simulated machine.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "drivers/files/cell.hpp"
+#include "drivers/lcm/connection.hpp"
+#include "rt/signals.hpp"
+
+namespace stillcut {
+
+struct LiveRunOptions {
+  std::string record;  // file for a plain candump log of what went into the core; empty: none
+  std::string events;  // file for the events as CSV; empty: none
+  int priority = 80;   // SCHED_FIFO
+  int cpu = -1;        // processor of the loop; -1: any
+  bool audit = false;  // end with status 134 at the loop's first forbidden system call
+  std::function<void(const Output&)>
+      on_output;  // told of all that is published, on the publisher's thread; may be empty
+};
+
+struct TickTimes {
+  double p50_us = 0.0, p9999_us = 0.0, max_us = 0.0;
+};
+
+class LiveRun {
+ public:
+  // Starts; `bus` is the cell's or another. Throws InputError and ComponentError.
+  LiveRun(const Cell& cell, const std::string& bus, const LcmConnection& lcm, const LiveRunOptions& options);
+  ~LiveRun();  // stops
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
+
+  // The bus has come to its end (a log).
+  [[nodiscard]] bool ended() const;
+
+  // Ends the loop, publishes what is left and the release that every end owes the controller.
+  void stop();
+
+  // After stop().
+  [[nodiscard]] nlohmann::ordered_json summary() const;
+  [[nodiscard]] TickTimes tick_times() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stillcut
