@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drivers/can/dbc.hpp"
+#include "models/mode_pairs.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
@@ -213,9 +214,7 @@ void VirtualMachine::move_structure(double time) {
   std::vector<Mode> modes = predict_posture(map_, posture_at(time), interpolation_).posture.modes;
   if (modes.size() != modes_.size()) throw std::runtime_error("a mode of the map is lost on the way between postures");
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    double along = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) along += modes[m].direction[i] * modes_[m].direction[i];
-    if (along < 0.0)
+    if (direction_cosine(modes[m], modes_[m]) < 0.0)
       for (double& part : modes[m].direction) part = -part;
   }
   dynamic_cast<ModalStructure&>(milling_.structure()).set_modes(modes);
