@@ -65,7 +65,7 @@ PartMilling milling_of(const HuynhPass& pass, const PassGeometry& g) {
   setup.material = huynh_material();
   setup.part = {plate_of(pass, g)};
   const Cut cut = huynh_cut(pass.way, pass.milling);
-  setup.axial_depth = cut.axial_depth;
+  setup.axial_depth = pass.axial_depth;
   setup.spindle_speed = cut.spindle_speed;
   setup.start_angle = pass.start_angle;
   setup.steps_per_turn = pass.steps_per_turn;
@@ -103,13 +103,13 @@ double peak_of(std::span<const double> values) {
 }
 
 // A tooth's own part of a turn is the half in which it faces the feed.
-std::array<double, 2> tooth_peaks(const Recorded& run, double feed_angle, int steps_per_turn) {
+std::array<double, 2> tooth_peaks(const Recorded& run, double feed_angle, int turns_measured) {
   const Tool tool = huynh_tool();
   std::array<double, 2> sum{};
-  const std::size_t turn = static_cast<std::size_t>(steps_per_turn), turns = run.cross.size() / turn;
+  const auto turns = static_cast<std::size_t>(turns_measured);
   for (std::size_t t = 0; t < turns; ++t) {
     std::array<double, 2> peak{};
-    for (std::size_t i = t * turn; i < (t + 1) * turn; ++i)
+    for (std::size_t i = t * run.cross.size() / turns; i < (t + 1) * run.cross.size() / turns; ++i)
       for (std::size_t tooth = 0; tooth < 2; ++tooth) {
         const double phi = run.angle[i] + feed_angle + (tooth == 0 ? 0.0 : tool.pitch[0]);
         if (std::sin(phi) > 0.0) peak[tooth] = std::max(peak[tooth], std::abs(run.cross[i]));
@@ -202,7 +202,7 @@ HuynhPassResult run_huynh_pass(const HuynhPass& pass, const std::function<void(d
   const PassGeometry g = geometry_of(pass);
   PartMilling milling = milling_of(pass, g);
   const auto steps = static_cast<std::int64_t>(std::llround(g.duration / milling.step()));
-  const std::int64_t measured = std::int64_t{pass.measured_turns} * pass.steps_per_turn;
+  const std::int64_t measured = std::llround(pass.measured_turns * pass.steps_per_turn);
   if (measured > steps) throw std::invalid_argument("a pass shorter than the turns to measure");
   Recorded run;
   std::vector<double> feed_acceleration, cross_acceleration;
@@ -226,14 +226,15 @@ HuynhPassResult run_huynh_pass(const HuynhPass& pass, const std::function<void(d
   result.cross_peak = peak_of(run.cross);
   result.cross_rms = rms(run.cross);
   result.cross_mean = mean_of(run.cross);
-  result.tooth_peak = tooth_peaks(run, huynh_cut(pass.way, pass.milling).feed_direction, pass.steps_per_turn);
+  result.tooth_peak = tooth_peaks(run, huynh_cut(pass.way, pass.milling).feed_direction, pass.measured_turns);
   result.cross_spectrum = amplitude_spectrum(run.cross, result.step, kHighestLine);
   result.deviation_mean = mean_of(run.deviation);
   result.deviation_peak = peak_of(run.deviation);
   result.feed_vibration = rms(feed_acceleration);
   result.cross_vibration = rms(cross_acceleration);
   measure_wall(pass, g, milling, result);
-  for (std::size_t i = run.feed.size() - 2 * static_cast<std::size_t>(pass.steps_per_turn); i < run.feed.size(); ++i) {
+  for (std::size_t i = run.feed.size() - static_cast<std::size_t>(std::llround(2.0 * pass.steps_per_turn));
+       i < run.feed.size(); ++i) {
     result.turns.push_back((run.angle[i] - run.angle[run.feed.size() - 1]) / kTwoPi + 2.0);
     result.feed_force.push_back(run.feed[i]);
     result.cross_force.push_back(run.cross[i]);

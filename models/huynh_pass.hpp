@@ -33,14 +33,16 @@ enum class PassWay { longitudinal, transversal };  // along x, the arm's own dir
 
 struct HuynhPass {
   PassWay way = PassWay::longitudinal;
-  Milling milling = Milling::down;                  // down or up
-  Eigen::Vector3d place{1.1, 0.0, 0.0};             // m, base axes: where the tool is commanded to be at the end
-  int steps_per_turn = 100, discs = 8, chords = 1;  // as in PartMillingSetup
-  double start_angle = 0.0;                         // rad
-  double runout = 0.0;                              // m
-  double air_time = 0.2, cutting_time = 2.0;        // s: at full feed before the plate; in it
-  double wall_length = 4e-3;                        // m, evaluated
-  int measured_turns = 100;                         // of the forces, the last ones
+  Milling milling = Milling::down;       // down or up
+  Eigen::Vector3d place{1.1, 0.0, 0.0};  // m, base axes: where the tool is commanded to be at the end
+  double steps_per_turn = 100.0;         // as in PartMillingSetup, as are
+  int discs = 8, chords = 1;
+  double axial_depth = 1.6e-3;                // m
+  double start_angle = 0.0;                   // rad
+  double runout = 0.0;                        // m
+  double air_time = 0.2, cutting_time = 2.0;  // s: at full feed before the plate; in it
+  double wall_length = 4e-3;                  // m, evaluated
+  int measured_turns = 100;                   // of the forces, the last ones
 };
 
 // Amplitudes of a sum of sines at multiples of `resolution`, from 0 up.

@@ -10,9 +10,9 @@
 namespace stillcut {
 namespace {
 
-constexpr int kFewestSteps = 30;      // a turn: the paper's own limit for the part's shape
-constexpr int kMostSteps = 100'000;   // a turn
-constexpr double kFurthestOff = 0.5;  // m off the path: no machine is there any more
+constexpr double kFewestSteps = 30.0;  // a turn: the paper's own limit for the part's shape
+constexpr double kMostSteps = 1e5;     // a turn
+constexpr double kFurthestOff = 0.5;   // m off the path: no machine is there any more
 
 void check_part_milling(const PartMillingSetup& setup) {
   const Tool& tool = setup.tool;
@@ -23,7 +23,7 @@ void check_part_milling(const PartMillingSetup& setup) {
     throw std::invalid_argument("axial depth: must be a positive number");
   if (!(setup.spindle_speed > 0.0 && std::isfinite(setup.spindle_speed)))
     throw std::invalid_argument("spindle speed: must be a positive number");
-  if (setup.steps_per_turn < kFewestSteps || setup.steps_per_turn > kMostSteps)
+  if (!(setup.steps_per_turn >= kFewestSteps && setup.steps_per_turn <= kMostSteps))
     throw std::invalid_argument("steps a turn: between 30, which the part's shape needs, and 100000");
   if (setup.chords < 1 || setup.discs < 0) throw std::invalid_argument("chords a step and discs: must be positive");
   if (!setup.path || !setup.structure) throw std::invalid_argument("milling needs a path and a structure");
@@ -87,8 +87,7 @@ void PartMilling::cut_away(const Eigen::Vector2d& to_axis, double from_angle, do
 
 const MillingState& PartMilling::advance() {
   const double time = static_cast<double>(steps_ + 1) * step_;
-  const double angle =
-      setup_.start_angle + kTwoPi * static_cast<double>(steps_ + 1) / static_cast<double>(setup_.steps_per_turn);
+  const double angle = setup_.start_angle + kTwoPi * static_cast<double>(steps_ + 1) / setup_.steps_per_turn;
   const Eigen::Vector2d commanded = setup_.path(time);
   const Eigen::Vector3d last_force = state_.force;
   const Eigen::Vector3d predicted = structure_->displacement_after(last_force, last_force);

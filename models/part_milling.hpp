@@ -27,7 +27,7 @@ struct PartMillingSetup {
   double start_angle = 0.0;    // rad, of tooth 0's tip at the start, clockwise from workpiece +y
   std::function<Eigen::Vector2d(double time)> path;                  // commanded tool axis, m, at a time in s
   std::function<std::unique_ptr<Structure>(double step)> structure;  // for a step in s
-  int steps_per_turn = 100;                                          // the paper's
+  double steps_per_turn = 100.0;                                     // the paper's; need not be whole
   int discs = 0;       // 0: as finely as the helix asks (edge_element_count)
   int chords = 1;      // straight segments that an edge's way in a step is made of; the paper's contours have one
   double tile = 1e-3;  // m, of the slices

@@ -74,11 +74,12 @@ TEST(PartMilling, MeanSlottingForceIsTheClosedForm) {
   for (const int teeth : {1, 3}) {
     PartMillingSetup setup = straight_pass(part_tool(teeth, 6e-3), 1.5e-3, Milling::slot, 6e-3, kFeed);
     setup.structure = modal(part_modes(1e12));
-    setup.steps_per_turn = test::kSanitized ? 120 : 360;
+    constexpr int kSteps = test::kSanitized ? 120 : 360;
+    setup.steps_per_turn = kSteps;
     PartMilling cut(setup);
-    for (int i = 0; i < 2 * setup.steps_per_turn; ++i) cut.advance();
+    for (int i = 0; i < 2 * kSteps; ++i) cut.advance();
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    const int steps = kTurns * setup.steps_per_turn;
+    const int steps = kTurns * kSteps;
     for (int i = 0; i < steps; ++i) mean += cut.advance().force / steps;
     const Material m = setup.material;
     const double n = teeth, depth = setup.axial_depth;
@@ -143,11 +144,10 @@ TEST(PartMilling, LeavesTheCuspsOfItsFeedOnTheWall) {
   constexpr double kFeed = 0.1e-3;
   PartMillingSetup setup = straight_pass(part_tool(2, 4e-3), 0.5e-3, Milling::down, 0.5e-3, kFeed);
   setup.structure = modal(part_modes(1e13));
-  setup.steps_per_turn = 100;
   setup.chords = 16;
   setup.discs = 1;
   PartMilling cut(setup);
-  for (int i = 0; i < 25 * setup.steps_per_turn; ++i) cut.advance();
+  for (int i = 0; i < 25 * 100; ++i) cut.advance();
   WallLine line;
   line.start = {0.5e-3, -2e-3 + 0.2e-3};
   line.into = {0, -1};
@@ -166,9 +166,9 @@ TEST(PartMilling, CutsNothingWhereNothingIsLeft) {
   setup.part = {{{0, -5e-3}, {1e-3, -5e-3}, {1e-3, -1.5e-3}, {0, -1.5e-3}}};  // ends after 1 mm
   PartMilling cut(setup);
   double largest = 0.0;
-  for (int i = 0; i < 15 * setup.steps_per_turn; ++i) largest = std::max(largest, cut.advance().force.norm());
+  for (int i = 0; i < 15 * 100; ++i) largest = std::max(largest, cut.advance().force.norm());
   EXPECT_GT(largest, 1.0);
-  for (int i = 0; i < 5 * setup.steps_per_turn; ++i) {
+  for (int i = 0; i < 5 * 100; ++i) {
     EXPECT_EQ(cut.advance().force.norm(), 0.0);
     EXPECT_EQ(cut.state().chip, 0.0);
   }
@@ -187,7 +187,7 @@ TEST(PartMilling, RefusesWhatItCannotSimulate) {
   refuses([](PartMillingSetup& s) { s.tool.pitch.pop_back(); });
   refuses([](PartMillingSetup& s) { s.axial_depth = 0.0; });
   refuses([](PartMillingSetup& s) { s.spindle_speed = std::nan(""); });
-  refuses([](PartMillingSetup& s) { s.steps_per_turn = 29; });
+  refuses([](PartMillingSetup& s) { s.steps_per_turn = 29.0; });
   refuses([](PartMillingSetup& s) { s.structure = {}; });
   refuses([](PartMillingSetup& s) { s.part.clear(); });
 }
