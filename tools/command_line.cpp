@@ -47,6 +47,7 @@ int run_stillcut(int argc, char** argv) {
   app.set_version_flag("--version", STILLCUT_VERSION);
   add_lobes_command(app);
   add_map_command(app);
+  add_passes_command(app);
   add_replay_command(app);
   add_simulate_command(app);
   add_stability_command(app);
