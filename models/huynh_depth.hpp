@@ -30,8 +30,17 @@ TurnMultiplier turn_multiplier(std::span<const Eigen::Vector2d> places, double t
 // Throws as MillingSimulation.
 TurnMultiplier huynh_multiplier_in_time(const HuynhPass& pass, double depth, double seconds = 0.8);
 
-// The depth, m, at which that multiplier is 1, between 3 % below and above `near` (m), where its logarithm is taken for
+// The depth, m, at which that multiplier is 1, between 1 % below and above `near` (m), where its logarithm is taken for
 // a straight line; NaN where it is not below 1 at the one and above 1 at the other.
 double huynh_depth_in_time(const HuynhPass& pass, double near);
+
+// The same in a part that is there (models/part_milling), whose face the tool meets at a slant, so that the cut deepens
+// over a second and the robot is not knocked. Here the radial depth moves with the tool and the chip is that of the
+// contours, both of which the lobes leave out. Four chords a step: the sagitta of one would be a chip of its own.
+TurnMultiplier huynh_multiplier_in_part(const HuynhPass& pass, double depth, double seconds = 0.8);
+
+// The depth, m, at which that multiplier is 1, by false position between four fifths and 1.2 of `near` (m); NaN where
+// it is not below 1 at the one and above 1 at the other.
+double huynh_depth_in_part(const HuynhPass& pass, double near);
 
 }  // namespace stillcut

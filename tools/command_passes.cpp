@@ -9,6 +9,7 @@
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
+#include "dsp/numbers.hpp"
 #include "tools/commands.hpp"
 #include "tools/output_file.hpp"
 #include "tools/output_options.hpp"
@@ -43,14 +44,15 @@ HuynhPass pass_of(const PassesOptions& options, PassWay way, Milling milling) {
   return pass;
 }
 
+// Where the lobes find no depth, the simulation with given immersion is asked at the deepest, and the part, which takes
+// long at such depths, not at all.
 PassDepths depths_of(const HuynhPass& pass) {
-  PassDepths depths;
-  depths.by_lobes = huynh_depth_by_lobes(pass, kDeepestAsked).depth;
+  PassDepths depths{huynh_depth_by_lobes(pass, kDeepestAsked).depth, kNaN, kNaN};
   if (std::isfinite(depths.by_lobes)) {
     depths.in_time = huynh_depth_in_time(pass, depths.by_lobes);
-  } else {
-    const bool stable = huynh_multiplier_in_time(pass, kDeepestAsked).modulus < 1.0;
-    depths.in_time = stable ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    depths.in_part = huynh_depth_in_part(pass, depths.by_lobes);
+  } else if (huynh_multiplier_in_time(pass, kDeepestAsked).modulus < 1.0) {
+    depths.in_time = std::numeric_limits<double>::infinity();
   }
   return depths;
 }
@@ -150,7 +152,7 @@ void add_passes_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(0.5, 20.0));
   command->add_flag("--depths", options->depths,
-                    "Also the depth at which each pass turns unstable, by lobes and in time");
+                    "Also the depth at which each pass turns unstable, by lobes and in time: takes three minutes");
   add_output_options(*command, *options, "Write the table", "Draw the forces over two turns");
   command->add_option("--plot-spectrum", options->spectrum_plot, "Draw the force's spectrum, to a .svg or .png file");
   command->add_option("--plot-wall", options->wall_plot, "Draw the machined walls, to a .svg or .png file");

@@ -107,14 +107,16 @@ std::vector<PassRow> pass_rows(const std::vector<PassRun>& runs) {
   if (!runs.empty() && runs.front().depths) {
     table.add("depth that turns unstable, by lobes", "mm", {},
               [](const PassRun& run) { return run.depths->by_lobes * 1e3; });
-    table.add("depth that turns unstable, in time", "mm", {},
+    table.add("depth that turns unstable, in time, given immersion", "mm", {},
               [](const PassRun& run) { return run.depths->in_time * 1e3; });
+    table.add("depth that turns unstable, in time, in the part", "mm", {},
+              [](const PassRun& run) { return run.depths->in_part * 1e3; });
   }
   return table.rows;
 }
 
 void print_pass_table(std::ostream& out, const std::vector<PassRun>& runs, const std::vector<PassRow>& rows) {
-  constexpr int kQuantity = 52, kColumn = 20;
+  constexpr int kQuantity = 57, kColumn = 20;
   out << padded("", kQuantity) << padded("paper", 9);
   for (const PassRun& run : runs) out << padded(pass_name(run.pass), kColumn);
   out << '\n';

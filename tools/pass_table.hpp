@@ -13,7 +13,8 @@
 namespace stillcut {
 
 struct PassDepths {
-  double by_lobes = 0.0, in_time = 0.0;  // m; infinite: stable to the largest depth asked, NaN: no such depth found
+  double by_lobes = 0.0, in_time = 0.0,
+         in_part = 0.0;  // m; infinite: stable to the largest depth asked, NaN: no such depth found
 };
 
 struct PassRun {
