@@ -8,6 +8,8 @@
 namespace stillcut {
 namespace {
 
+constexpr std::size_t kShownEvery = 4;  // points of a profile, 4 um: a picture's own
+
 std::string wall_title(const PassRun& run) {
   const Roughness mean = over_slices(run.result.wall).mean;
   std::array<char, 160> text{};
@@ -69,7 +71,7 @@ plot::Figure pass_wall_figure(const std::vector<PassRun>& runs) {
     panel.y.label = "height [µm]";
     plot::Line line{.x = {}, .y = {}, .color = plot::kInk, .width = 1.0, .label = ""};
     const double count = static_cast<double>(run.result.profile.size() - 1);
-    for (std::size_t i = 0; i < run.result.profile.size(); ++i) {
+    for (std::size_t i = 0; i < run.result.profile.size(); i += kShownEvery) {
       line.x.push_back(static_cast<double>(i) / count * run.pass.wall_length * 1e3);
       line.y.push_back(run.result.profile[i] * 1e6);
     }

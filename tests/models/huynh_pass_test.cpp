@@ -120,11 +120,24 @@ TEST(HuynhDepth, TheWholeRobotInTimeTurnsUnstableWhereTheLobesSay) {
   const DepthLimit limit = huynh_depth_by_lobes(pass, 40e-3);
   EXPECT_NEAR(limit.chatter_frequency / kTwoPi, 17.1, 0.3);  // its first mode, across the arm
   if (test::kSanitized) return;
-  const TurnMultiplier below = huynh_multiplier_in_time(pass, 0.97 * limit.depth, 0.5);
-  const TurnMultiplier above = huynh_multiplier_in_time(pass, 1.03 * limit.depth, 0.5);
+  const TurnMultiplier below = huynh_multiplier_in_time(pass, 0.98 * limit.depth, 0.5);
+  const TurnMultiplier above = huynh_multiplier_in_time(pass, 1.02 * limit.depth, 0.5);
   EXPECT_LT(below.modulus, 1.0);
   EXPECT_GT(above.modulus, 1.0);
   EXPECT_NEAR(above.frequency, limit.chatter_frequency, 0.01 * limit.chatter_frequency);
+}
+
+// Shallow, the part and the given immersion tell the same; deep, the part turns unstable earlier
+// (docs/robot-passes.md).
+TEST(HuynhDepth, AShallowCutDiesDownAlikeInThePart) {
+  if (test::kSanitized) return;
+  HuynhPass pass;
+  pass.way = PassWay::transversal;
+  const TurnMultiplier given = huynh_multiplier_in_time(pass, 2e-3, 0.4),
+                       part = huynh_multiplier_in_part(pass, 2e-3, 0.4);
+  EXPECT_NEAR(part.modulus, given.modulus, 2e-4);
+  EXPECT_NEAR(part.frequency, given.frequency, 0.01 * given.frequency);
+  EXPECT_LT(part.modulus, 0.998);
 }
 
 }  // namespace
