@@ -22,9 +22,10 @@ Eigen::Vector2d feed_of(PassWay way) {
 
 struct PassGeometry {
   FeedPath path;
-  double entry_travel, end_travel, duration;  // m, m, s: where the tool's edge meets the plate, and the end
+  double entry_travel = 0.0, end_travel = 0.0,
+         duration = 0.0;  // m, m, s: where the tool's edge meets the plate, and the end
   Eigen::Vector2d feed, cross;
-  double side;  // +1: the plate is on the side of `cross`, -1: on the other
+  double side = 0.0;  // +1: the plate is on the side of `cross`, -1: on the other
 };
 
 PassGeometry geometry_of(const HuynhPass& pass) {
