@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/edge_force.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -159,18 +161,9 @@ void MillingSimulation::add_load(const Step& step, std::size_t tooth, std::size_
   const double chip = std::lerp(chip_at(low), chip_at(high), part);
   if (!(chip > 0.0)) return;  // out of contact: the tooth does not reach the surface
 
-  const Material& m = setup_.material;
   const Eigen::Vector2d outward = (1.0 - part) * bin_normal_[low] + part * bin_normal_[high];
-  const double s = outward.x(), c = outward.y(),
-               share = engaged_share(element) * (engaged_to - engaged_from) / step.swept;
-  const Eigen::Vector3d normal(s * edge.sin_kappa, c * edge.sin_kappa, -edge.cos_kappa);
-  const Eigen::Vector3d along_profile(s * edge.cos_kappa, c * edge.cos_kappa, edge.sin_kappa);
-  const double rubbing = m.process_damping * normal.dot(step.velocity) / step.cutting_speed;
-  const double tangential = m.ktc * chip * edge.chip_width + m.kte * edge.edge_length;
-  const double radial = (m.krc * chip + rubbing) * edge.chip_width + m.kre * edge.edge_length;
-  const double axial = m.kac * chip * edge.chip_width + m.kae * edge.edge_length;
-  load.force -=
-      share * (Eigen::Vector3d(tangential * c, -tangential * s, 0.0) + radial * normal + axial * along_profile);
+  const double share = engaged_share(element) * (engaged_to - engaged_from) / step.swept;
+  load.force += share * edge_force(setup_.material, edge, outward, chip, {step.velocity, step.cutting_speed});
   load.chip = std::max(load.chip, chip);
 }
 

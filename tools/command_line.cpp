@@ -48,6 +48,7 @@ int run_stillcut(int argc, char** argv) {
   add_hil_command(app);
   add_lobes_command(app);
   add_map_command(app);
+  add_passes_command(app);
   add_plant_command(app);
   add_replay_command(app);
   add_simulate_command(app);

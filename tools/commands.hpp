@@ -10,6 +10,7 @@ namespace stillcut {
 void add_hil_command(CLI::App& app);
 void add_lobes_command(CLI::App& app);
 void add_map_command(CLI::App& app);
+void add_passes_command(CLI::App& app);
 void add_plant_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
