@@ -22,8 +22,8 @@ Eigen::Vector2d feed_of(PassWay way) {
 
 struct PassGeometry {
   FeedPath path;
-  double entry_travel = 0.0, end_travel = 0.0,
-         duration = 0.0;  // m, m, s: where the tool's edge meets the plate, and the end
+  double entry_travel = 0.0, end_travel = 0.0;  // m: where the tool's edge meets the plate, and the end
+  double duration = 0.0;                        // s
   Eigen::Vector2d feed, cross;
   double side = 0.0;  // +1: the plate is on the side of `cross`, -1: on the other
 };
