@@ -23,8 +23,8 @@ constexpr double kSlantTime = 1.0, kSettleTime = 0.3;  // s, of the cut in a par
 constexpr double kBackingDepth = 3e-3;                 // m of part behind the wall
 constexpr int kChords = 4;
 constexpr int kDelays = 10;
-constexpr double kRidge = 1e-12;  // of the changes' squares: less is not the recurrence's
-constexpr double kBeside = 0.01;  // of a depth: how far the simulations beside it are
+constexpr double kLeastNorm = 1e-12;  // of the changes' squares: less is not the recurrence's
+constexpr double kBeside = 0.01;      // of a depth: how far the simulations beside it are
 constexpr std::size_t kFewestPlaces = 40;
 
 // What the robot and the part do from one look at the tool to the next, the place's last kDelays changes under each
@@ -42,7 +42,7 @@ Eigen::MatrixXd recurrence_of(std::span<const Eigen::Vector2d> places) {
     next.row(row) = change(row + kDelays).transpose();
   }
   Eigen::MatrixXd square = last.transpose() * last;
-  square.diagonal().array() += kRidge * square.trace();
+  square.diagonal().array() += kLeastNorm * square.trace();
   Eigen::MatrixXd recurrence = Eigen::MatrixXd::Zero(2 * kDelays, 2 * kDelays);
   recurrence.topRows(2) = square.llt().solve(last.transpose() * next).transpose();
   recurrence.bottomLeftCorner(2 * kDelays - 2, 2 * kDelays - 2).setIdentity();

@@ -10,9 +10,9 @@
 namespace stillcut {
 namespace {
 
-constexpr double kFewestSteps = 30.0;  // a turn: the paper's own limit for the part's shape
-constexpr double kMostSteps = 1e5;     // a turn
-constexpr double kFurthestOff = 0.5;   // m off the path: no machine is there any more
+constexpr double kFewestPartSteps = 30.0;  // a turn: the paper's own limit for the part's shape
+constexpr double kMostPartSteps = 1e5;     // a turn
+constexpr double kFurthestOff = 0.5;       // m off the path: no machine is there any more
 
 void check_part_milling(const PartMillingSetup& setup) {
   const Tool& tool = setup.tool;
@@ -23,7 +23,7 @@ void check_part_milling(const PartMillingSetup& setup) {
     throw std::invalid_argument("axial depth: must be a positive number");
   if (!(setup.spindle_speed > 0.0 && std::isfinite(setup.spindle_speed)))
     throw std::invalid_argument("spindle speed: must be a positive number");
-  if (!(setup.steps_per_turn >= kFewestSteps && setup.steps_per_turn <= kMostSteps))
+  if (!(setup.steps_per_turn >= kFewestPartSteps && setup.steps_per_turn <= kMostPartSteps))
     throw std::invalid_argument("steps a turn: between 30, which the part's shape needs, and 100000");
   if (setup.chords < 1 || setup.discs < 0) throw std::invalid_argument("chords a step and discs: must be positive");
   if (!setup.path || !setup.structure) throw std::invalid_argument("milling needs a path and a structure");
