@@ -15,6 +15,8 @@ constexpr double kOutOfSight_s = 0.06;
 constexpr double kBlindToEnd_s = 0.5;        // chatter out of sight for this long is over as far as can be told
 constexpr double kFilterRevolutions = 16.0;  // memory of the synchronous filter
 constexpr double kLongestFilterMemory_s = 0.25;
+constexpr double kOnOrder_hz = 3.0;      // nearer to an order a line cannot be told from it
+constexpr int kHopsToBelong = 16;        // half a release time
 constexpr double kFaded = 0.1;           // of the largest amplitude of the episode
 constexpr double kFilterSlowdown = 8.0;  // in chatter, so that it is not learned as synchronous
 
@@ -136,9 +138,15 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
     ratio = std::max(ratio, candidate.ratio);
     view_.chatter_frequency_hz = tone.frequency_hz;
     view_.chatter_amplitude = tone.amplitude;
-    free_hops_ = away_from_order(tone.frequency_hz) > std::max(5.0, 0.001 * tone.frequency_hz) ? free_hops_ + 1 : 0;
+    const double away_hz = away_from_order(tone.frequency_hz);
+    free_hops_ = away_hz > std::max(5.0, 0.001 * tone.frequency_hz) ? free_hops_ + 1 : 0;
+    order_hops_ = away_hz < kOnOrder_hz ? order_hops_ + 1 : 0;
+    was_free_ = was_free_ || free_hops_ >= 2;
     break;
   }
+  // A correction moves the spindle until one of its orders stands where the chatter was. When the line that was free
+  // has become that order and stays it, what is heard is forced vibration.
+  if (was_free_ && order_hops_ >= kHopsToBelong) ratio = 0.0;
   view_.indicator = std::sqrt(ratio);
   // What the synchronous filter has learned of loud chatter it repeats on the orders when that is gone: learn afresh.
   largest_amplitude_ = std::max(largest_amplitude_, view_.chatter_amplitude);

@@ -123,7 +123,8 @@ class Monitor {
   double below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
   double largest_amplitude_ = 0.0;
   bool faded_ = false;
-  int free_hops_ = 0;
+  int free_hops_ = 0, order_hops_ = 0;  // in a row, that its line stood off the spindle's orders, or on one
+  bool was_free_ = false;
   std::array<Event, kMaxEvents> events_{};
   std::size_t event_count_ = 0;
 };

@@ -103,7 +103,8 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   view_.indicator = std::sqrt(candidate.ratio);
   chatter_sensor_ = index;
   below_s_ = doubt_s_ = unseen_s_ = 0.0;
-  free_hops_ = 0;
+  free_hops_ = order_hops_ = 0;
+  was_free_ = line != Line::on_order;
   largest_amplitude_ = tone.amplitude;
   faded_ = false;
   // Back along the measured growth to where the line left its floor (S = 1).

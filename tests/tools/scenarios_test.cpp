@@ -90,6 +90,17 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(shipped_scenari
 
 TEST(ShippedScenarios, AreAtLeastADozen) { EXPECT_GE(shipped_scenarios().size(), 12U); }
 
+// Once the spindle turns at the target one of its orders stands where the chatter was; that line is forced and asks for
+// nothing more.
+TEST(ShippedScenarios, ACorrectionThatEndsTheChatterIsTheOnlyOne) {
+  for (const std::string name : {"depth-step", "depth-ramp", "pocket-above"}) {
+    const ClosedRun run = run_closed(name, RuntimeMode::active);
+    EXPECT_EQ(run.score.corrections, 1) << name;
+    EXPECT_EQ(run.score.spells.size(), 1U) << name;
+    EXPECT_LT(run.score.suppression_ms.value_or(1e9), 1000.0) << name;
+  }
+}
+
 class RepeatableScenario : public testing::TestWithParam<std::string> {};
 
 TEST_P(RepeatableScenario, RepeatsToTheBit) {
