@@ -41,7 +41,11 @@ void Monitor::add_speed(const SpindleReading& reading) noexcept {
                          (settings_.highest_speed <= 0.0 || reading.speed <= 1.5 * settings_.highest_speed);
   speed_fault_ = plausible ? kNoDoubt : kSpeedImplausible;
   if (!plausible) return;
-  if (std::abs(reading.speed - speed_.last_speed()) > 0.002 * reading.speed) steady_s_ = 0.0;
+  // Against where it was when it was last called steady: a spindle that creeps to its target is not.
+  if (std::abs(reading.speed - steady_speed_) > 0.002 * reading.speed) {
+    steady_s_ = 0.0;
+    steady_speed_ = reading.speed;
+  }
   speed_.add(reading);
 }
 

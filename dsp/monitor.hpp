@@ -114,7 +114,8 @@ class Monitor {
   std::int64_t origin_ns_ = 0, first_sample_ns_ = 0, newest_ns_ = 0;
   std::array<ExpectedMode, kMaxModes> modes_{};
   std::size_t mode_count_ = 0;
-  double steady_s_ = 0.0;  // how long speed and contact have been unchanged
+  double steady_s_ = 0.0;      // how long speed and contact have been unchanged
+  double steady_speed_ = 0.0;  // rad/s, since then
   std::uint32_t speed_fault_ = kNoDoubt;
   std::array<double, kDoubtCount> clear_for_s_{};
   std::array<Suspect, kMaxSensors> suspect_{}, standing_{};

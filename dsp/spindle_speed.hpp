@@ -18,7 +18,6 @@ class SpindleSpeed {
 
   [[nodiscard]] bool has_reading() const noexcept { return readings_ > 0; }
   [[nodiscard]] std::int64_t last_stamp_ns() const noexcept { return last_.stamp_ns; }
-  [[nodiscard]] double last_speed() const noexcept { return last_.speed; }
 
   // By how much recent readings missed what was extended to their stamps, rad/s: near 0 at constant speed and on an
   // even ramp, large where a ramp begins or ends and where stamps jitter.

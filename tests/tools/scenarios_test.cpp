@@ -93,7 +93,7 @@ TEST(ShippedScenarios, AreAtLeastADozen) { EXPECT_GE(shipped_scenarios().size(),
 // Once the spindle turns at the target one of its orders stands where the chatter was; that line is forced and asks for
 // nothing more.
 TEST(ShippedScenarios, ACorrectionThatEndsTheChatterIsTheOnlyOne) {
-  for (const std::string name : {"depth-step", "depth-ramp", "pocket-above"}) {
+  for (const std::string name : {"depth-step", "depth-ramp", "pocket-above", "slow-spindle"}) {
     const ClosedRun run = run_closed(name, RuntimeMode::active);
     EXPECT_EQ(run.score.corrections, 1) << name;
     EXPECT_EQ(run.score.spells.size(), 1U) << name;
