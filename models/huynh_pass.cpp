@@ -11,10 +11,10 @@
 namespace stillcut {
 namespace {
 
-constexpr double kFeedRate = 3.7 / 60.0;  // m/s, 3700 mm/min
-constexpr double kBacking = 3e-3;         // m of plate behind the wall
-constexpr double kBehindTool = 1e-3;      // m behind the tool's axis the wall is finished
-constexpr double kHighestLine = 2500.0;   // Hz
+constexpr double kFeedRate = 3.7 / 60.0;      // m/s, 3700 mm/min
+constexpr double kBacking = 3e-3;             // m of plate behind the wall
+constexpr double kBehindTool = 1e-3;          // m behind the tool's axis the wall is finished
+constexpr double kHighestForceLine = 2500.0;  // Hz
 
 Eigen::Vector2d feed_of(PassWay way) {
   return way == PassWay::longitudinal ? Eigen::Vector2d(1.0, 0.0) : Eigen::Vector2d(0.0, 1.0);
@@ -228,7 +228,7 @@ HuynhPassResult run_huynh_pass(const HuynhPass& pass, const std::function<void(d
   result.cross_rms = rms(run.cross);
   result.cross_mean = mean_of(run.cross);
   result.tooth_peak = tooth_peaks(run, huynh_cut(pass.way, pass.milling).feed_direction, pass.measured_turns);
-  result.cross_spectrum = amplitude_spectrum(run.cross, result.step, kHighestLine);
+  result.cross_spectrum = amplitude_spectrum(run.cross, result.step, kHighestForceLine);
   result.deviation_mean = mean_of(run.deviation);
   result.deviation_peak = peak_of(run.deviation);
   result.feed_vibration = rms(feed_acceleration);

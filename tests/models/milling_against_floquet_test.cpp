@@ -158,8 +158,8 @@ Growth growth_in_time(const RandomCut& cut, int ramp, double settled) try {
   return {};  // grown beyond what is a machine
 }
 
-constexpr int kSeries = test::kSanitized ? 1 : 7;
-constexpr int kCuts = test::kSanitized ? 10 : 150;
+constexpr int kRandomSeries = test::kSanitized ? 1 : 7;
+constexpr int kRandomCuts = test::kSanitized ? 10 : 150;
 
 class MillingAgainstFloquet : public ::testing::TestWithParam<int> {};
 
@@ -170,7 +170,7 @@ TEST_P(MillingAgainstFloquet, VerdictsAndGrowthAgreeOnRandomCuts) {
   std::mt19937_64 random(5200 + static_cast<unsigned>(GetParam()));
   int verdicts = 0, rates = 0, unstable = 0, balls = 0, uneven = 0;
   double worst = 0.0;
-  for (int i = 0; i < kCuts; ++i) {
+  for (int i = 0; i < kRandomCuts; ++i) {
     const RandomCut cut = random_milling(random);
     const MillingSetup& s = cut.setup;
     const LinearCut linear = linear_cut(s.tool, s.material, s.cut);
@@ -194,8 +194,8 @@ TEST_P(MillingAgainstFloquet, VerdictsAndGrowthAgreeOnRandomCuts) {
     ++rates;
   }
   if (test::kSanitized) return;  // too few cuts for shares
-  EXPECT_GE(verdicts, kCuts * 3 / 4);
-  EXPECT_GE(rates, kCuts / 2);
+  EXPECT_GE(verdicts, kRandomCuts * 3 / 4);
+  EXPECT_GE(rates, kRandomCuts / 2);
   EXPECT_GT(unstable, verdicts / 20);
   EXPECT_GT(balls, verdicts / 10);
   EXPECT_GT(uneven, verdicts / 40);
@@ -203,7 +203,7 @@ TEST_P(MillingAgainstFloquet, VerdictsAndGrowthAgreeOnRandomCuts) {
               100.0 * worst);
 }
 
-INSTANTIATE_TEST_SUITE_P(Series, MillingAgainstFloquet, ::testing::Range(0, kSeries));
+INSTANTIATE_TEST_SUITE_P(Series, MillingAgainstFloquet, ::testing::Range(0, kRandomSeries));
 
 }  // namespace
 }  // namespace stillcut
