@@ -1,7 +1,6 @@
 #include "tests/bench/detection/cut_plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -15,7 +14,9 @@ namespace stillcut::detection {
 namespace {
 
 constexpr int kTries = 400;
-constexpr double kDeepest = 0.012;             // m, that a plan may use
+constexpr double kDeepest = 0.012;       // m, that a plan may use
+constexpr double kDeepestSound = 0.003;  // m: deeper cuts throw the tool about before they chatter
+constexpr double kAgree = 1.1;           // of the depth at which the robot alone chatters as fast: there both must
 constexpr double kEntry = 0.3, kStable = 0.9;  // s: air before the cut; a sound cut before chatter
 constexpr double kSlowestTool = 300.0, kFastestTool = 1500.0, kSlowestRobot = 8.0, kFastestRobot = 20.0;  // Hz
 
@@ -134,7 +135,7 @@ std::optional<CutPlan> try_tool_chatter(Draw& draw) {
   const double speed = plan.setup.cut.spindle_speed, period = period_of(plan.setup);
   const double teeth_a_period = std::round(period * speed / kTwoPi * plan.setup.tool.teeth);
   const Reached limit = depth_for(plan.setup, modes, speed, 1.0);
-  if (!(limit.depth > 0.0)) return {};
+  if (!(limit.depth < kDeepestSound)) return {};
   const Reached grown = depth_for(plan.setup, modes, speed, std::pow(plan.growth, teeth_a_period));
   if (!within(grown.hz, kSlowestTool, kFastestTool) || !within(limit.hz, kSlowestTool, kFastestTool)) return {};
   plan.setup.modes = modes;
@@ -159,6 +160,7 @@ std::optional<CutPlan> try_structural(Draw& draw, bool both) {
   if (!(limit.depth > 30e-6) || !within(grown.hz, kSlowestRobot, kFastestRobot)) return {};
   plan.slow_hz = grown.hz;
   plan.slow_growth_per_s = std::log(a_cycle) * hz;
+  plan.slow_heard_at = draw.log_even(5e-6, 50e-6);
   plan.growth = both ? draw.log_even(1.03, 1.3) : 0.6;
   const double teeth_a_period = std::round(period * speed / kTwoPi * plan.setup.tool.teeth);
   const Reached tool_grown = depth_for(plan.setup, tool, speed, both ? std::pow(plan.growth, teeth_a_period) : 1.0);
@@ -171,8 +173,13 @@ std::optional<CutPlan> try_structural(Draw& draw, bool both) {
   if (both) plan.limit = std::min(plan.limit, stiffer * depth_for(plan.setup, tool, speed, 1.0).depth);
   plan.setup.modes = tool;
   plan.setup.modes.insert(plan.setup.modes.end(), robot.begin(), robot.end());
-  schedule_onset(plan, draw, grown.depth,
-                 both ? std::min(plan.growth_per_s, plan.slow_growth_per_s) : plan.slow_growth_per_s);
+  // The tool gives way as well: together they chatter at another depth than the robot alone.
+  const Reached together = depth_for(plan.setup, plan.setup.modes, speed, std::pow(a_cycle, hz * period));
+  if (!both && !within(together.hz, kSlowestRobot, kFastestRobot)) return {};
+  if (both && !(together.depth < kAgree * grown.depth)) return {};
+  if (!both) plan.slow_hz = together.hz;
+  const double slowest = both ? std::min(plan.growth_per_s, plan.slow_growth_per_s) : plan.slow_growth_per_s;
+  schedule_onset(plan, draw, both ? grown.depth : together.depth, slowest);
   return plan;
 }
 
@@ -245,26 +252,6 @@ std::optional<CutPlan> try_cut(Draw& draw, CutKind kind) {
 }
 
 }  // namespace
-
-std::string_view name(CutKind kind) {
-  constexpr std::array<std::string_view, 9> kNames{"tool", "structural", "both",   "forced",     "steady",
-                                                   "ramp", "entries",    "knocks", "interrupted"};
-  return kNames.at(static_cast<std::size_t>(kind));
-}
-
-CutKind mixed_kind(int index) {
-  using enum CutKind;
-  constexpr std::array<CutKind, 16> kMix{tool_chatter,       steady,       tool_chatter, forced_near_mode, tool_chatter,
-                                         structural_chatter, tool_chatter, knocks,       tool_chatter,     interrupted,
-                                         tool_chatter,       entries,      tool_chatter, both_kinds,       tool_chatter,
-                                         speed_ramp};
-  return kMix[static_cast<std::size_t>(index) % kMix.size()];
-}
-
-CutKind sound_kind(int index) {
-  constexpr int kFirst = static_cast<int>(CutKind::forced_near_mode), kLast = static_cast<int>(CutKind::interrupted);
-  return static_cast<CutKind>(kFirst + index % (kLast - kFirst + 1));
-}
 
 CutPlan draw_cut(SeedList list, int index, CutKind kind) {
   const std::uint64_t first = list == SeedList::tuning ? 1'000'000 : 2'000'000;

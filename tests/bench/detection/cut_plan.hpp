@@ -36,6 +36,7 @@ struct CutPlan {
   double duration = 0.0;        // s
   double sensor_rate_hz = 0.0;  // per axis
   double snr_db = 0.0;          // of chatter at half the forced displacement, in 100 Hz .. 0.4 of the rate
+  double slow_heard_at = 0.0;   // m, of the robot's chatter: where three times the noise in 2-100 Hz is reached
 
   double growth = 0.0;      // spectral radius per tooth period at the last depth
   double chatter_hz = 0.0;  // that theory predicts, of the faster kind; a stable cut: of its tool mode

@@ -8,6 +8,7 @@ namespace stillcut::detection {
 namespace {
 
 constexpr int kSamplesPerFrame = 10;
+constexpr double kThrownOff = 2e-3;                          // m
 constexpr double kSpeedPeriod = 0.02;                        // s
 constexpr double kTenth = 0.1, kVisible = 0.5, kLoud = 3.0;  // of the forced amplitude; of the noise
 constexpr double kLowest_hz = 100.0, kHighestOfRate = 0.4;   // the band of the signal-to-noise ratio
@@ -34,6 +35,7 @@ Clean simulate(const CutPlan& plan, TipMotion& motion) {
       ++knock;
     }
     const MillingState& state = milling.advance(conditions_at(plan.setup, plan.schedule, time));
+    if (state.displacement.norm() > kThrownOff) break;  // here a machine would be stopped, and the record ends
     motion.x.push_back(state.displacement.x());
     motion.y.push_back(state.displacement.y());
     motion.angle.push_back(state.spindle_angle);
@@ -56,21 +58,33 @@ double noise_for(const CutPlan& plan, double forced) {
   return std::sqrt(chatter_power / std::pow(10.0, 0.1 * plan.snr_db) / in_band);
 }
 
+// Displacement of the robot's chatter whose acceleration is three times the noise in 2-100 Hz, rms beside rms.
+double slow_amplitude_at_clock(const CutPlan& plan, double noise) {
+  const double omega = kTwoPi * plan.slow_hz, in_band = noise * std::sqrt(kSlowBand_hz / (0.5 * plan.sensor_rate_hz));
+  return kLoud * in_band * std::sqrt(2.0) / (omega * omega);
+}
+
+void quieten(const CutPlan& plan, CutTruth& truth) {
+  const double less = std::min(1.0, plan.slow_heard_at / slow_amplitude_at_clock(plan, truth.noise));
+  truth.noise *= less;
+  truth.snr_db -= 20.0 * std::log10(less);
+}
+
 CutTruth find_truth(const CutPlan& plan, TipMotion motion) {
   CutTruth truth;
   truth.forced = plan.reference_scale * forced_amplitude(motion, plan.reference_from, plan.reference_to);
   truth.noise = noise_for(plan, truth.forced);
+  truth.snr_db = plan.snr_db;
+  if (plan.slow_hz > 0.0) quieten(plan, truth);
   truth.amplitude = line_amplitude(motion, tool_line(plan));
-  if (chatters(plan.kind)) {
+  if (plan.kind == CutKind::tool_chatter || plan.kind == CutKind::both_kinds) {
     const Rise rise = rise_of(truth.amplitude, kTenth * truth.forced, kVisible * truth.forced, plan.unstable_depth_at);
     truth.tenth_s = rise.limit_s;
     truth.visible_s = rise.proof_s;
   }
   if (plan.slow_hz > 0.0) {
     const TipLine line = slow_line(plan);
-    const double omega = kTwoPi * line.frequency_hz;
-    const double noise = truth.noise * std::sqrt(kSlowBand_hz / (0.5 * plan.sensor_rate_hz));
-    const double limit = kLoud * noise * std::sqrt(2.0) / (omega * omega);
+    const double limit = slow_amplitude_at_clock(plan, truth.noise);
     truth.slow_s = rise_of(line_amplitude(motion, line), limit, limit, plan.unstable_depth_at).limit_s;
   }
   truth.motion = std::move(motion);

@@ -17,6 +17,7 @@ struct CutTruth {
   double tenth_s = kNaN, visible_s = kNaN;  // tool chatter at 10 % and 50 % of it; NaN: never
   double slow_s = kNaN;                     // structural: its acceleration stands at 3 x the noise in 2-100 Hz
   double noise = 0.0;                       // m/s^2, standard deviation of a sample
+  double snr_db = 0.0;                      // the plan's, or better where structural chatter would not be heard
   std::vector<double> amplitude;            // m, tool chatter, every millisecond
   TipMotion motion;
 };

@@ -21,13 +21,17 @@ MonitorSettings settings_of(const CutPlan& plan) {
 
 void collect(const Monitor& monitor, std::vector<Alarm>& alarms, bool& open) {
   for (const Event& event : monitor.events()) {
-    if (event.type == EventType::chatter_end) open = false;
+    const double time = static_cast<double>(event.stamp_ns - kOrigin_ns) * 1e-9;
+    if (event.type == EventType::chatter_end) {
+      if (open) alarms.back().end = time;
+      open = false;
+    }
     if (event.type != EventType::chatter_onset) continue;
     const bool second_kind = open && event.kind != ChatterKind::unknown && alarms.back().kind != ChatterKind::unknown &&
                              alarms.back().kind != event.kind;
     if (!open || second_kind) {
       Alarm alarm;
-      alarm.time = static_cast<double>(event.stamp_ns - kOrigin_ns) * 1e-9;
+      alarm.time = time;
       alarm.frequency_hz = event.frequency_hz;
       alarms.push_back(alarm);
     }

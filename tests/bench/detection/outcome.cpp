@@ -61,6 +61,8 @@ DetectorOutcome judge_alarms(const CutPlan& plan, const CutTruth& truth, const s
       outcome.error_250ms_hz = error(alarm.after_250ms_hz, kLong_s);
     }
   }
+  const auto hides = [&](const Alarm& alarm) { return alarm.time < sound_until && alarm.end > truth.visible_s; };
+  outcome.hidden = !outcome.detected && std::any_of(alarms.begin(), alarms.end(), hides);
   if (plan.slow_hz > 0.0) judge_structural(plan, truth, alarms, outcome);
   return outcome;
 }
@@ -84,12 +86,12 @@ CutOutcome judge(int index, const CutPlan& plan) {
   outcome.index = index;
   outcome.kind = plan.kind;
   outcome.growth = plan.growth;
-  outcome.snr_db = plan.snr_db;
   outcome.sensor_rate_hz = plan.sensor_rate_hz;
   outcome.chatter_hz = plan.chatter_hz;
   outcome.slow_hz = plan.slow_hz;
   outcome.revolution_s = kTwoPi / plan.setup.cut.spindle_speed;
   outcome.stable_s = chatters(plan.kind) ? plan.unstable_from : plan.duration;
+  outcome.snr_db = cut.truth.snr_db;
   outcome.tenth_s = cut.truth.tenth_s;
   outcome.visible_s = cut.truth.visible_s;
   outcome.slow_s = cut.truth.slow_s;

@@ -7,6 +7,7 @@ namespace stillcut::detection {
 
 struct DetectorOutcome {
   bool detected = false;        // an alarm from where the depth began to rise until 0.5 s after the truth's own moment
+  bool hidden = false;          // not detected, as an episode that had begun falsely stood open when it was visible
   double alarm_s = kNaN;        // the first of these
   int false_alarms = 0;         // in sound cutting
   int called_regenerative = 0;  // of the false ones

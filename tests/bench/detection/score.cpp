@@ -107,6 +107,9 @@ Value of_allowed(double turns, double seconds) {
 void add_delays(Table& table) {
   table.add("chatter that becomes visible: detected, %", {">= 99", 99.0, true}, "%.1f", visible, detected_percent,
             mean);
+  table.add(
+      "  missed, as an episode begun falsely before stood open, %", {}, "%.1f", visible,
+      [](const CutOutcome&, const DetectorOutcome& heard) { return heard.hidden ? 100.0 : 0.0; }, mean);
   table.add("delay after 10 %, median, ms", {}, "%.1f", visible, after_tenth_ms, at_share(0.5));
   table.add("the same, revolutions", {}, "%.1f", visible, after_tenth_turns, at_share(0.5));
   table.add("the same over the longer of 5 rev and 10 ms", {"<= 1", 1.0}, "%.2f", visible, of_allowed(5.0, 0.010),

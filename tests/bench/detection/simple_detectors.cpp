@@ -19,21 +19,25 @@ constexpr double kEnergyLimit = 0.2;
 constexpr double kSpectrum_s = 0.1, kSpectrumHop_s = 0.025, kLineLimit = 0.5;  // of the largest order's amplitude
 constexpr double kLowestLine_hz = 100.0, kHighestOfSampleRate = 0.4;
 
-// In the cut, by the plan, and long enough to judge.
+// In the cut, by the plan, for so many revolutions and so long that a detector's memory holds nothing else.
 class Contact {
  public:
-  explicit Contact(const CutPlan& plan) : plan_{plan} {}
+  explicit Contact(const CutPlan& plan, double turns = kHoldOff, double seconds = 0.0)
+      : plan_{plan}, turns_{turns}, seconds_{seconds} {}
   bool judges(double time, double turns) {
-    if (!(value_at(plan_.schedule.axial_depth, time) > 0.0))
+    if (!(value_at(plan_.schedule.axial_depth, time) > 0.0)) {
       since_ = -1.0;
-    else if (since_ < 0.0)
+    } else if (since_ < 0.0) {
       since_ = turns;
-    return since_ >= 0.0 && turns - since_ > kHoldOff;
+      since_s_ = time;
+    }
+    return since_ >= 0.0 && turns - since_ > turns_ && time - since_s_ > seconds_;
   }
 
  private:
   const CutPlan& plan_;
-  double since_ = -1.0;
+  double turns_, seconds_;
+  double since_ = -1.0, since_s_ = 0.0;
 };
 
 class Episodes {
@@ -46,7 +50,9 @@ class Episodes {
       alarms_.push_back(alarm);
     }
     if (above) above_at_ = time;
+    const bool was_open = open_ || above;
     open_ = above || (open_ && time - above_at_ < kRelease_s);
+    if (was_open && !open_) alarms_.back().end = time;
   }
   std::vector<Alarm> take() { return std::move(alarms_); }
 
@@ -158,7 +164,7 @@ std::vector<Alarm> ask_once_per_revolution(const CutPlan& plan, const MilledCut&
 // Residual: what differs from the mean of the last twelve revolutions at the same angle; its share of all energy, over
 // one revolution.
 std::vector<Alarm> ask_energy_ratio(const CutPlan& plan, const MilledCut& cut) {
-  Contact contact{plan};
+  Contact contact{plan, kHoldOff + static_cast<double>(kMeanTurns)};
   Episodes episodes;
   std::array<std::size_t, kMeanTurns> past{};
   std::vector<double> rest(cut.samples.size()), all(cut.samples.size());
@@ -191,7 +197,7 @@ std::vector<Alarm> ask_energy_ratio(const CutPlan& plan, const MilledCut& cut) {
 }
 
 std::vector<Alarm> ask_fft(const CutPlan& plan, const MilledCut& cut) {
-  Contact contact{plan};
+  Contact contact{plan, kHoldOff, kSpectrum_s};
   Episodes episodes;
   const int length = window_length(plan.sensor_rate_hz, kSpectrum_s);
   const auto hop = static_cast<std::size_t>(kSpectrumHop_s * plan.sensor_rate_hz);
