@@ -76,7 +76,7 @@ MillingSetup draw_setup(Draw& draw) {
   cut.radial_depth = std::min(1.0, immersion) * tool.diameter;
   cut.feed_per_tooth = draw.even(0.04e-3, 0.12e-3);
   cut.spindle_speed = rpm_to_rad_s(draw.log_even(3000.0, 16000.0));
-  setup.force_noise = draw.even(0.01, 0.04);
+  setup.force_noise = draw.even(0.003, 0.01);  // more, and noise alone holds a tenth of the forced amplitude
   return setup;
 }
 

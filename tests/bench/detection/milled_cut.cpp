@@ -70,22 +70,32 @@ void quieten(const CutPlan& plan, CutTruth& truth) {
   truth.snr_db -= 20.0 * std::log10(less);
 }
 
+std::vector<double> depth_shares(const CutPlan& plan, const TipMotion& motion) {
+  const double then = value_at(plan.schedule.axial_depth, plan.reference_from);
+  std::vector<double> shares(motion.x.size());
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    shares[i] = value_at(plan.schedule.axial_depth, static_cast<double>(i + 1) / motion.rate_hz) / then;
+  return shares;
+}
+
 CutTruth find_truth(const CutPlan& plan, TipMotion motion) {
   CutTruth truth;
   truth.forced = plan.reference_scale * forced_amplitude(motion, plan.reference_from, plan.reference_to);
   truth.noise = noise_for(plan, truth.forced);
   truth.snr_db = plan.snr_db;
   if (plan.slow_hz > 0.0) quieten(plan, truth);
+  if (plan.slow_hz > 0.0) {
+    const TipLine line = slow_line(plan);
+    const double limit = slow_amplitude_at_clock(plan, truth.noise);
+    truth.slow_s = rise_of(line_amplitude(motion, line), limit, limit, plan.unstable_depth_at).limit_s;
+  }
+  if (chatters(plan.kind))
+    remove_repetition(motion, plan.reference_from, plan.reference_to, depth_shares(plan, motion));
   truth.amplitude = line_amplitude(motion, tool_line(plan));
   if (plan.kind == CutKind::tool_chatter || plan.kind == CutKind::both_kinds) {
     const Rise rise = rise_of(truth.amplitude, kTenth * truth.forced, kVisible * truth.forced, plan.unstable_depth_at);
     truth.tenth_s = rise.limit_s;
     truth.visible_s = rise.proof_s;
-  }
-  if (plan.slow_hz > 0.0) {
-    const TipLine line = slow_line(plan);
-    const double limit = slow_amplitude_at_clock(plan, truth.noise);
-    truth.slow_s = rise_of(line_amplitude(motion, line), limit, limit, plan.unstable_depth_at).limit_s;
   }
   truth.motion = std::move(motion);
   return truth;

@@ -14,6 +14,7 @@ constexpr double kCycles = 4.0, kSlowCycles = 2.0;  // of the window; two put th
 constexpr int kMostRevolutions = 4;
 constexpr double kLeastGain = 0.25;  // a line that nearly repeats every revolution is not amplified beyond this
 constexpr std::size_t kStands_ms = 20;
+constexpr std::size_t kAngles = 360;  // of a revolution, in between straight lines
 
 using Complex = std::complex<double>;
 
@@ -103,6 +104,30 @@ Phasors phasors_at(const TipMotion& motion, const Residual& left, double hz, dou
 double window_of(const TipLine& line) { return (line.slow ? kSlowCycles : kCycles) / line.frequency_hz; }
 
 }  // namespace
+
+void remove_repetition(TipMotion& motion, double from, double to, const std::vector<double>& share) {
+  std::vector<Complex> sum(kAngles), wave(kAngles);
+  std::vector<double> weight(kAngles);
+  const auto place = [&](std::size_t i) {  // among the angles, with a part of one
+    const double turns = motion.angle[i] / kTwoPi;
+    return static_cast<double>(kAngles) * (turns - std::floor(turns));
+  };
+  const auto last = std::min(motion.x.size(), static_cast<std::size_t>(to * motion.rate_hz));
+  for (auto i = static_cast<std::size_t>(from * motion.rate_hz); i < last; ++i) {
+    const auto at = static_cast<std::size_t>(place(i) + 0.5) % kAngles;
+    sum[at] += Complex{motion.x[i], motion.y[i]};
+    weight[at] += 1.0;
+  }
+  for (std::size_t k = 0; k < kAngles; ++k)
+    wave[k] = weight[k] > 0.0 ? sum[k] / weight[k] : wave[(k + kAngles - 1) % kAngles];
+  for (std::size_t i = 0; i < motion.x.size(); ++i) {
+    const double at = place(i);
+    const auto low = static_cast<std::size_t>(at) % kAngles;
+    const Complex expected = share[i] * (wave[low] + (at - std::floor(at)) * (wave[(low + 1) % kAngles] - wave[low]));
+    motion.x[i] -= expected.real();
+    motion.y[i] -= expected.imag();
+  }
+}
 
 std::vector<double> line_amplitude(const TipMotion& motion, const TipLine& line) {
   const Residual left = without_revolutions(motion, line);

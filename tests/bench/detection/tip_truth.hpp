@@ -19,6 +19,10 @@ struct TipLine {
   bool slow = false;          // far below the spindle: nothing needs to be subtracted
 };
 
+// Takes out what repeated every revolution between two moments, times `share` of every sample (its depth of cut over
+// that of those moments): a change of depth then leaves little in the revolutions that are subtracted afterwards.
+void remove_repetition(TipMotion& motion, double from, double to, const std::vector<double>& share);
+
 // Amplitude of a line at every millisecond, m, centred; 0 where it cannot be known yet. Both axes together.
 std::vector<double> line_amplitude(const TipMotion& motion, const TipLine& line);
 
