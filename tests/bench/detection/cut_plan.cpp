@@ -196,6 +196,12 @@ void schedule_stable(CutPlan& plan, Draw& draw, double depth) {
       const double away = draw.even(0.02, 0.1), back = draw.even(0.02, 0.1);
       cut.insert(cut.end(), {{t, depth}, {t + away, 0.0}, {t + away + 0.2, 0.0}, {t + away + 0.2 + back, depth}});
     }
+  if (plan.kind == CutKind::deeper) {
+    const double less = draw.even(0.3, 0.8) * depth, took = draw.even(0.005, 0.05);
+    cut.back().value = less;
+    cut.insert(cut.end(), {{1.5, less}, {1.5 + took, depth}, {2.8, depth}, {2.8 + took, less}});
+    depth = less;
+  }
   if (plan.kind == CutKind::interrupted) {
     const double period = draw.even(0.06, 0.25);
     for (double t = 1.2; t < plan.duration; t += period)

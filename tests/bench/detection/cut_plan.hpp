@@ -24,6 +24,7 @@ enum class CutKind : std::uint8_t {
   entries,  // and exits
   knocks,
   interrupted,
+  deeper,  // to a depth that is sound as well, and back
 };
 std::string_view name(CutKind kind);
 constexpr bool chatters(CutKind kind) { return kind <= CutKind::both_kinds; }

@@ -137,7 +137,7 @@ void add_false_alarms(Table& table, std::span<const CutOutcome> cuts) {
   table.add("the same, an hour", {}, "%.0f", sound, count,
             [sound_s](const std::vector<double>& v) { return total(v) / (sound_s / kHour_s); });
   for (const CutKind kind : {CutKind::forced_near_mode, CutKind::steady, CutKind::speed_ramp, CutKind::entries,
-                             CutKind::knocks, CutKind::interrupted})
+                             CutKind::knocks, CutKind::interrupted, CutKind::deeper})
     table.add(
         "  of them in cuts of kind '" + std::string(name(kind)) + "'", {}, "%.0f",
         [kind](const CutOutcome& cut) { return !cut.not_stable && cut.kind == kind; }, count, total);
