@@ -5,30 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "models/wall_profile.hpp"
+
 namespace stillcut {
 namespace {
 
 constexpr double kSamplingLength = 0.8e-3;  // m
 constexpr std::size_t kPoints = 160;        // a sampling length: 5 um apart
 constexpr double kFarthest = 0.5e-3;        // m: an arc that far away is 12 um lower with a tool of 20 mm
-
-// Mean distance from the least-squares line through equally spaced heights.
-double mean_deviation(const std::vector<double>& height) {
-  const auto n = static_cast<double>(height.size());
-  double mean = 0.0, slope = 0.0, spread = 0.0;
-  for (const double h : height) mean += h / n;
-  const double middle = 0.5 * (n - 1.0);
-  for (std::size_t i = 0; i < height.size(); ++i) {
-    const double x = static_cast<double>(i) - middle;
-    slope += x * (height[i] - mean);
-    spread += x * x;
-  }
-  slope /= spread;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < height.size(); ++i)
-    sum += std::abs(height[i] - mean - slope * (static_cast<double>(i) - middle));
-  return sum / n;
-}
 
 }  // namespace
 
@@ -52,7 +36,7 @@ double wall_roughness(std::span<const ToothPass> passes, double tool_radius) {
       height[i] = deepest;
     }
     if (!covered) continue;  // the tool was out of the part
-    sum += mean_deviation(height);
+    sum += roughness(height, kSamplingLength / kPoints).ra;
     ++lengths;
   }
   return lengths > 0 ? sum / lengths : std::numeric_limits<double>::quiet_NaN();

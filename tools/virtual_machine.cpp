@@ -20,11 +20,10 @@ double scheduled_value(const Schedule& schedule, double time, double otherwise) 
   return schedule.empty() ? otherwise : value_at(schedule, time);
 }
 
-// The structure moves as its modes do; superposed ones (frf) would change their number on the way.
-Interpolation modal_interpolation(const Interpolation& asked) {
-  Interpolation modal = asked;
-  if (modal.kind == InterpolationKind::frf) modal.kind = InterpolationKind::modal;
-  return modal;
+CellDynamics moving_dynamics(const Cell& cell) {
+  CellDynamics dynamics = read_cell_dynamics(cell);
+  if (dynamics.interpolation.kind == InterpolationKind::frf) dynamics.interpolation.kind = InterpolationKind::modal;
+  return dynamics;
 }
 
 Cut start_cut(const Cell& cell, const Scenario& scenario) {
@@ -102,15 +101,12 @@ VirtualMachine::VirtualMachine(const Cell& cell, const Scenario& scenario, std::
     : scenario_{scenario},
       tool_{require(cell, cell.tool, "tool")},
       cut_{start_cut(cell, scenario)},
-      map_{read_cell_dynamics(cell).map},
-      interpolation_{modal_interpolation(read_cell_dynamics(cell).interpolation)},
-      stations_{stations_of(cell, map_, scenario)},
+      dynamics_{moving_dynamics(cell)},
+      stations_{stations_of(cell, dynamics_.map, scenario)},
       origin_ns_{origin_ns},
-      sample_rate_hz_{sample_rate_of(cell, map_)},
-      milling_{make_milling(cell,
-                            setup_of_machine(cell, scenario, cut_,
-                                             predict_posture(map_, stations_.front(), interpolation_).posture.modes),
-                            sample_rate_hz_)},
+      sample_rate_hz_{sample_rate_of(cell, dynamics_.map)},
+      modes_{predict_posture(dynamics_.map, stations_.front(), dynamics_.interpolation).posture.modes},
+      milling_{make_milling(cell, setup_of_machine(cell, scenario, cut_, modes_), sample_rate_hz_)},
       encoder_{read_dbc(require(cell, cell.can, "can").dbc),
                *cell.can,
                cell.file.string(),
@@ -118,7 +114,6 @@ VirtualMachine::VirtualMachine(const Cell& cell, const Scenario& scenario, std::
                origin_ns},
       controller_{scenario.controller, require(cell, cell.spindle, "spindle"), milling_.state().spindle_speed,
                   origin_ns},
-      modes_{predict_posture(map_, stations_.front(), interpolation_).posture.modes},
       random_{scenario.seed},
       wall_{tool_, milling_.conditions().feed_direction} {
   check_nan(scenario_, encoder_);
@@ -211,7 +206,7 @@ void VirtualMachine::move_structure(double time) {
   });
   if (!moving || time < next_posture_s_) return;
   next_posture_s_ = time + kMovingStep;
-  std::vector<Mode> modes = predict_posture(map_, posture_at(time), interpolation_).posture.modes;
+  std::vector<Mode> modes = predict_posture(dynamics_.map, posture_at(time), dynamics_.interpolation).posture.modes;
   if (modes.size() != modes_.size()) throw std::runtime_error("a mode of the map is lost on the way between postures");
   for (std::size_t m = 0; m < modes.size(); ++m) {
     if (direction_cosine(modes[m], modes_[m]) < 0.0)

@@ -14,6 +14,7 @@
 #include "models/interpolation.hpp"
 #include "models/milling_simulation.hpp"
 #include "tools/can_encoder.hpp"
+#include "tools/cell_posture.hpp"
 #include "tools/virtual_controller.hpp"
 #include "tools/wall_recorder.hpp"
 
@@ -71,16 +72,15 @@ class VirtualMachine {
 
   Scenario scenario_;
   Tool tool_;
-  Cut cut_;  // the cell's, with the scenario's milling kind
-  DynamicsMap map_;
-  Interpolation interpolation_;
+  Cut cut_;                        // the cell's, with the scenario's milling kind
+  CellDynamics dynamics_;          // interpolated by modes: superposed ones (frf) would change their number on the way
   std::vector<Posture> stations_;  // at the start, and after each move
   std::int64_t origin_ns_;
   double sample_rate_hz_;
+  std::vector<Mode> modes_;  // of the structure now
   MillingSimulation milling_;
   CanEncoder encoder_;
   VirtualController controller_;
-  std::vector<Mode> modes_;  // of the structure now
   double next_posture_s_ = 0.0;
   std::size_t next_knock_ = 0;
   std::mt19937_64 random_;
