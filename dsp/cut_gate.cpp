@@ -8,11 +8,12 @@ namespace stillcut {
 namespace {
 
 constexpr double kMustLast_s = 0.015;  // a single knock changes no state
+constexpr double kRevolutionsToLearn = 6.0;
 constexpr double kSameSpeed = 0.1;
 
 }  // namespace
 
-CutGate::Change CutGate::step(double level, double speed, double step_s) noexcept {
+CutGate::Change CutGate::step(double level, double whole_level, double speed, double step_s) noexcept {
   const bool was_cutting = state_ == State::entry || state_ == State::cut;
   if (speed < settings_.idle_speed) {
     state_ = State::idle;
@@ -34,15 +35,23 @@ CutGate::Change CutGate::step(double level, double speed, double step_s) noexcep
   // while the tool cuts.
   if (air_ > 0.0) {
     const double memory_s = level < air_ ? settings_.air_fall_s : settings_.air_rise_s;
-    if (!was_cutting || level < air_) air_ += std::min(1.0, step_s / memory_s) * (level - air_);
-  } else if (revolutions_ > 6.0) {
+    if (!was_cutting || level < air_) {
+      air_ += std::min(1.0, step_s / memory_s) * (level - air_);
+      air_whole_ += std::min(1.0, step_s / memory_s) * (whole_level - air_whole_);
+    }
+  } else if (revolutions_ > kRevolutionsToLearn) {
     air_ = level;
+    air_whole_ = whole_level;
   }
   if (air_ <= 0.0) return Change::none;
 
   const bool loud = level > settings_.entry_ratio * air_;
   level_tells_ = was_cutting && (level_tells_ || loud);
-  const bool beyond = was_cutting ? level_tells_ && level < settings_.exit_ratio * air_ : loud;
+  whole_tells_ = was_cutting && (whole_tells_ || whole_level > settings_.entry_ratio * air_whole_);
+  const bool quiet = (level_tells_ && level < settings_.exit_ratio * air_) ||
+                     (whole_tells_ && whole_level < settings_.exit_ratio * air_whole_);
+  // What repeats is learned anew after an exit: before that its level tells nothing.
+  const bool beyond = was_cutting ? quiet : loud && revolutions_ > kRevolutionsToLearn;
   beyond_s_ = beyond ? beyond_s_ + step_s : 0.0;
   if (beyond_s_ >= kMustLast_s) {
     beyond_s_ = revolutions_ = 0.0;

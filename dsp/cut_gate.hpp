@@ -23,8 +23,9 @@ class CutGate {
 
   enum class Change : std::uint8_t { none, entered, left };
 
-  // One step of `step_s` with the present level (m/s^2, > 0) and speed (rad/s).
-  Change step(double level, double speed, double step_s) noexcept;
+  // One step of `step_s`: level of what repeats with the spindle, which is what tells of a cut (chatter does not
+  // repeat, and must not pass for an entry), and of the whole vibration (both m/s^2, > 0); speed in rad/s.
+  Change step(double level, double whole_level, double speed, double step_s) noexcept;
 
   // Chatter was heard: the tool must be in the cut, whatever the level says.
   Change contact() noexcept;
@@ -33,18 +34,20 @@ class CutGate {
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] double air_level() const noexcept { return air_; }
-  [[nodiscard]] bool at_cutting_level(double level) const noexcept {
-    return air_ > 0.0 && level > settings_.entry_ratio * air_;
+  // Is so loud a vibration that of a cut, for all that can be told without a turning spindle?
+  [[nodiscard]] bool at_cutting_level(double whole_level) const noexcept {
+    return air_ > 0.0 && whole_level > settings_.entry_ratio * air_whole_;
   }
 
  private:
   CutGateSettings settings_;
   State state_ = State::idle;
-  bool level_tells_ = false;  // the level has been at a cutting level in this cut, so its fall will tell the exit
-  double air_ = 0.0;          // 0: not heard yet
-  double heard_speed_ = 0.0;  // to which the air level belongs
-  double revolutions_ = 0.0;  // since the state was entered
-  double beyond_s_ = 0.0;     // how long the level has been beyond the limit that would change the state
+  // The level (the whole level) has been at a cutting level in this cut, so its fall will tell the exit.
+  bool level_tells_ = false, whole_tells_ = false;
+  double air_ = 0.0, air_whole_ = 0.0;  // 0: not heard yet
+  double heard_speed_ = 0.0;            // to which the air level belongs
+  double revolutions_ = 0.0;            // since the state was entered
+  double beyond_s_ = 0.0;               // how long the level has been beyond the limit that would change the state
 };
 
 }  // namespace stillcut

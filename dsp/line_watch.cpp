@@ -121,6 +121,7 @@ void LineWatch::judge() noexcept {
     for (int b = first_; b <= last_; ++b)
       over_floor[b] = power[b] / (floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor);
     const float common = std::max(1.0F, common_rise());
+    common_ = a == 0 ? common : std::max(common_, common);
     const float per_common = 1.0F / common, highest = floor_hops_ < kHopsToLearn ? HUGE_VALF : clip;
     float* const s = newest.data();
     for (int b = first_; b <= last_; ++b) {

@@ -2,8 +2,8 @@
 // detection.
 //
 // Every hop (an eighth of a 25 ms Hann window) the power P of each bin is held against its running floor F. The
-// statistic S = P / F, divided by the broad-band rise common to all bins, must stay above the bin's limit for half a
-// window. The floor is the clipped running mean of the same bin, so a constant false-alarm rate needs no level to be
+// statistic S = P / F, divided by the broad-band rise common to all bins, must stay above the bin's limit for two
+// hops. The floor is the clipped running mean of the same bin, so a constant false-alarm rate needs no level to be
 // set; the limit is lower near modes that the dynamics map predicts and follows the predicted margin (the prior).
 // docs/detection.md.
 #pragma once
@@ -26,7 +26,7 @@ struct LineWatchSettings {
   double window_s = 0.025;
   double lowest_hz = 100.0;
   double highest_of_rate = 0.4;  // of the sample rate
-  double limit = 16.0;           // of S, without prior
+  double limit = 12.0;           // of S, without prior
   double floor_memory_s = 1.0;
   double floor_clip = 4.0;  // a single window raises the floor by no more than this times itself
 };
@@ -80,6 +80,8 @@ class LineWatch {
   [[nodiscard]] double longest_lag_s() const noexcept { return (kept_ - length_ - 2) / (bin_hz_ * length_); }
   [[nodiscard]] int hop_length() const noexcept { return hop_; }
 
+  // What all bins of the newest hop have gained together over their floors, the most of any axis: 1 in an even cut.
+  [[nodiscard]] double common() const noexcept { return common_; }
   // The floor has seen enough to judge by.
   [[nodiscard]] bool ready() const noexcept { return floor_hops_ >= kHopsToLearn; }
   // Keeps the floor as it is (chatter must not become its own floor).
@@ -93,7 +95,7 @@ class LineWatch {
   void set_prior(std::span<const ExpectedMode> modes, double margin) noexcept;
 
  private:
-  static constexpr int kHopsAWindow = 8, kHopsToStay = 4, kHopsToLearn = 32;
+  static constexpr int kHopsAWindow = 8, kHopsToStay = 2, kHopsToLearn = 32;
 
   void make_room() noexcept;
   void finish_hop() noexcept;
@@ -118,6 +120,7 @@ class LineWatch {
   bool floor_held_ = false;
   std::array<LineCandidate, kCandidates> candidates_{};
   std::size_t found_ = 0;
+  float common_ = 1.0F;
 };
 
 // Window length for a duration: a multiple of 8 whose half is even and a product of 2, 3 and 5.

@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kLargestStep_hz = 5.0;  // from hop to hop of a chatter line
 constexpr double kOutOfSight_s = 0.06;
-constexpr double kBlindToEnd_s = 0.5;        // chatter out of sight for this long is over as far as can be told
-constexpr double kFilterRevolutions = 16.0;  // memory of the synchronous filter
-constexpr double kLongestFilterMemory_s = 0.25;
-constexpr double kOnOrder_hz = 3.0;      // nearer to an order a line cannot be told from it
-constexpr int kHopsToBelong = 16;        // half a release time
-constexpr double kFaded = 0.1;           // of the largest amplitude of the episode
-constexpr double kFilterSlowdown = 8.0;  // in chatter, so that it is not learned as synchronous
+constexpr double kBlindToEnd_s = 0.5;  // chatter out of sight for this long is over as far as can be told
+// Memory of the synchronous filter: short, so that a change of depth has left the residual after a few revolutions, and
+// chatter is not hidden behind it; a line 0.05 of an order off the spindle's passes all the same.
+constexpr double kFilterRevolutions = 4.0;
+constexpr double kOnOrder_hz = 3.0;         // nearer to an order a line cannot be told from it
+constexpr int kHopsToBelong = 16;           // half a release time
+constexpr double kFaded = 0.1;              // of the largest amplitude of the episode
+constexpr double kReleaseSmoothing = 0.25;  // a hop
+constexpr double kFilterSlowdown = 8.0;     // in chatter, so that it is not learned as synchronous
 
 }  // namespace
 
@@ -32,7 +34,7 @@ Monitor::Monitor(const MonitorSettings& settings) : settings_{settings}, gate_{s
     }
     sensors_.push_back({SampleClock{sensor.sample_rate_hz}, SensorPath{sensor, settings.watch}, 0, 0, 0, false});
   }
-  view_.indicator = view_.chatter_frequency_hz = kNaN;
+  view_.indicator = view_.chatter_frequency_hz = view_.structural_frequency_hz = kNaN;
   view_.state = State::cannot_tell;
 }
 
@@ -68,8 +70,7 @@ void Monitor::add_samples(const SampleBlock& block) noexcept {
     report_lost_frames(sensor, placed.samples_lost, placed.stamp_ns);
   }
   const double rate = sensor.path.sample_rate_hz();
-  const double revolution_s = view_.speed > 0.0 ? 2.0 * std::numbers::pi / view_.speed : 1.0;
-  const double memory = std::clamp(kLongestFilterMemory_s / revolution_s, 6.0, kFilterRevolutions);
+  const double memory = kFilterRevolutions;
   const bool loud = view_.chatter && view_.indicator > 1.0 && !faded_;
   sensor.path.filter().set_memory(loud ? kFilterSlowdown * memory : memory);
   for (int i = 0; i < block.samples;) {
@@ -89,18 +90,23 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
   set_doubts(kGap | kSaturated | kStuck | kNotFinite, sensor.path.doubts(), stamp_ns, step_s);
 
   if (index == 0) {  // one gate for the cell, driven by the first accelerometer's hops
-    double power = 0.0;
-    for (const Sensor& each : sensors_) power += each.path.level() * each.path.level();
-    const CutGate::Change change = gate_.step(std::sqrt(power), view_.speed, step_s);
+    double whole = 0.0, synchronous = 0.0;
+    for (const Sensor& each : sensors_) {
+      whole += each.path.level() * each.path.level();
+      synchronous += each.path.synchronous_level() * each.path.synchronous_level();
+    }
+    const CutGate::Change change = gate_.step(std::sqrt(synchronous), std::sqrt(whole), view_.speed, step_s);
     if (change != CutGate::Change::none) steady_s_ = 0.0;
     if (change == CutGate::Change::entered) {
       for (Sensor& each : sensors_) {
         each.path.filter().restart();
         each.path.watch().relearn_floor();
+        each.path.slow().relearn_floor();
       }
       emit(stamp_ns, EventType::cut_entry, ChatterKind::unknown, kNaN, "");
     } else if (change == CutGate::Change::left) {
       if (view_.chatter) end_chatter(stamp_ns, "cut exit");
+      if (view_.structural) end_structural(stamp_ns, "cut exit");
       leave_cut(stamp_ns);
     }
   }
@@ -116,13 +122,17 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
   } else if (able) {
     look_for_onset(index, stamp_ns);
   }
-  for (Sensor& each : sensors_) each.path.watch().hold_floor(view_.chatter || !trusted);
+  if (sensor.path.take_slow_step()) listen_to_structure(index, stamp_ns, trusted);
+  for (Sensor& each : sensors_) {
+    each.path.watch().hold_floor(view_.chatter || !trusted);
+    each.path.slow().hold_floor(view_.structural || !trusted);
+  }
   if (!able) view_.indicator = kNaN;
   const bool idle = gate_.state() == State::idle;
-  view_.state = !trusted        ? State::cannot_tell
-                : view_.chatter ? State::chatter
-                : able || idle  ? gate_.state()
-                                : State::cannot_tell;
+  view_.state = !trusted                            ? State::cannot_tell
+                : view_.chatter || view_.structural ? State::chatter
+                : able || idle                      ? gate_.state()
+                                                    : State::cannot_tell;
 }
 
 void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
@@ -167,7 +177,8 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
            "kind now told: off the spindle order");
     }
   }
-  below_s_ = ratio < settings_.release_ratio ? below_s_ + step_s : 0.0;
+  smooth_ratio_ += kReleaseSmoothing * (ratio - smooth_ratio_);
+  below_s_ = smooth_ratio_ < settings_.release_ratio ? below_s_ + step_s : 0.0;
   if (below_s_ >= settings_.release_s) end_chatter(stamp_ns, "");
 }
 
@@ -182,7 +193,7 @@ void Monitor::end_chatter(std::int64_t stamp_ns, const char* why) noexcept {
 }
 
 void Monitor::leave_cut(std::int64_t stamp_ns) noexcept {
-  for (Sensor& each : sensors_) each.path.filter().restart();
+  for (Sensor& each : sensors_) each.path.filter().forget();
   emit(stamp_ns, EventType::cut_exit, ChatterKind::unknown, kNaN, "");
 }
 

@@ -26,7 +26,7 @@ struct MonitorSettings {
   bool has_speed_signal = true;
   LineWatchSettings watch{};
   CutGateSettings gate{};
-  double release_ratio = 0.25;  // of the limit on S (half of it in amplitude): below it chatter has ended
+  double release_ratio = 0.35;  // of the limit on S, its mean over some hops: below it chatter has ended
   double release_s = 0.1;       // for this long
 };
 
@@ -36,10 +36,12 @@ struct MonitorView {
   State state = State::idle;
   double indicator = 0.0;  // 1 is the alarm limit; NaN when it cannot tell
   double speed = 0.0;      // measured, rad/s
-  bool chatter = false;
+  bool chatter = false;    // of the tool
   ChatterKind kind = ChatterKind::unknown;
-  double chatter_frequency_hz = 0.0;  // NaN without chatter
-  double chatter_amplitude = 0.0;     // m/s^2
+  double chatter_frequency_hz = 0.0;     // NaN without chatter
+  double chatter_amplitude = 0.0;        // m/s^2
+  bool structural = false;               // chatter of the robot's structure, by itself or beside the tool's
+  double structural_frequency_hz = 0.0;  // NaN without it
   std::uint32_t doubts = kNoDoubt;
   std::int64_t samples_lost = 0;
 };
@@ -72,22 +74,33 @@ class Monitor {
     std::int64_t losses = 0;
     bool heard = false;
   };
-  enum class Line : std::uint8_t { nothing, on_order, free };
+  enum class Line : std::uint8_t { nothing, on_order, free, wild };
   struct Suspect {  // a line that looks like chatter but has yet to last
     Line line = Line::nothing;
     double frequency_hz = 0.0, cycles = 0.0;  // cycles: phase turned in a revolution
-    int hops = 0;                             // heard in so many, less those since in which it was not
+    double peak = 0.0;                        // the largest amplitude since it was suspected, m/s^2
+    double evidence = 0.0;                    // gathered in the hops in which it was heard, less those in which not
     std::int64_t since_ns = 0;
   };
 
   void finish_hop(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   void look_for_onset(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  bool add_evidence(Suspect& suspect, const Suspect& heard, const Tone& tone, double bin_hz,
+                    std::int64_t stamp_ns) const noexcept;
+  [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
+  bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void look_for_standing_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
+  void listen_to_structure(std::size_t sensor, std::int64_t stamp_ns, bool trusted) noexcept;
+  [[nodiscard]] double structural_evidence_asked(const SensorPath& path, double frequency_hz) const noexcept;
+  void follow_structural(const SlowWatch& slow, std::int64_t stamp_ns) noexcept;
+  void end_structural(std::int64_t stamp_ns, const char* why) noexcept;
   void end_chatter(std::int64_t stamp_ns, const char* why) noexcept;
   void leave_cut(std::int64_t stamp_ns) noexcept;
   void begin_chatter(std::size_t sensor, std::int64_t stamp_ns, const LineCandidate& candidate,
                      const Tone& tone) noexcept;
+  [[nodiscard]] double of_forced(const SensorPath& path, const Tone& tone) const noexcept;
+  [[nodiscard]] Tone base_line(const SensorPath& path, int axis, const Tone& heard) const noexcept;
   [[nodiscard]] bool speed_confirmed(std::int64_t since_ns) const noexcept;
   [[nodiscard]] double speed_uncertainty() const noexcept;
   [[nodiscard]] Suspect classify(const SensorPath& path, const LineCandidate& candidate,
@@ -119,9 +132,13 @@ class Monitor {
   std::uint32_t speed_fault_ = kNoDoubt;
   std::array<double, kDoubtCount> clear_for_s_{};
   std::array<Suspect, kMaxSensors> suspect_{}, standing_{};
+  std::array<int, kMaxSensors> wild_hops_{};
+  // The episode of structural chatter that is open.
+  std::size_t structural_sensor_ = 0;
+  double structural_below_s_ = 0.0;
   // The episode of chatter that is open.
   std::size_t chatter_sensor_ = 0;
-  double below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
+  double smooth_ratio_ = 0.0, below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
   double largest_amplitude_ = 0.0;
   bool faded_ = false;
   int free_hops_ = 0, order_hops_ = 0;  // in a row, that its line stood off the spindle's orders, or on one

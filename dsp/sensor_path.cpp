@@ -5,11 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "dsp/numbers.hpp"
+
 namespace stillcut {
 namespace {
 
-constexpr double kMeanMemory_s = 0.03;   // gravity, drift and slow feed force leave the level through this
-constexpr double kLevelSpan_s = 0.03;    // at least; three revolutions where those are longer
+constexpr double kMeanMemory_s = 0.03;  // gravity, drift and slow feed force leave the level through this
+constexpr double kLevelSpan_s = 0.03;   // at least; three revolutions where those are longer
+constexpr double kFallSpan_s = 0.25;
 constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle worth following
 
 }  // namespace
@@ -18,7 +21,8 @@ SensorPath::SensorPath(const SensorSettings& sensor, const LineWatchSettings& wa
     : rate_{sensor.sample_rate_hz},
       axes_{std::popcount(static_cast<unsigned>(sensor.axes_present & 7U))},
       filter_{axes_},
-      watch_{axes_, sensor.sample_rate_hz, watch} {
+      watch_{axes_, sensor.sample_rate_hz, watch},
+      slow_{axes_, sensor.sample_rate_hz} {
   int n = 0;
   for (int a = 0; a < kMaxAxes; ++a) {
     if ((sensor.axes_present >> a & 1U) != 0) axis_[n++] = a;
@@ -37,11 +41,15 @@ void SensorPath::skip(std::int64_t samples, double speed) noexcept {
   check_.forget_runs();
   if (samples > watch_.window_length() / 4) {
     watch_.clear_window();
+    slow_.clear();
     raise(kGap);
     return;
   }
   const std::array<float, kMaxAxes> silence{};
-  for (std::int64_t i = 0; i < samples; ++i) watch_.push({silence.data(), static_cast<std::size_t>(axes_)});
+  for (std::int64_t i = 0; i < samples; ++i) {
+    watch_.push({silence.data(), static_cast<std::size_t>(axes_)});
+    if (slow_.push({slow_sample_.data(), static_cast<std::size_t>(axes_)})) slow_stepped_ = true;
+  }
 }
 
 int SensorPath::process(const SampleBlock& block, int from, double speed) noexcept {
@@ -72,6 +80,10 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
       const float alternating = x[a] - mean_[a];
       hop_power_ += alternating * alternating;
     }
+    for (int a = 0; a < axes_; ++a) {
+      if (std::isfinite(x[a])) slow_sample_[a] = turning ? residual[a] + filter_.mean(a) : x[a];
+    }
+    if (slow_.push({slow_sample_.data(), static_cast<std::size_t>(axes_)})) slow_stepped_ = true;
     hop_complete_ = watch_.push({residual.data(), static_cast<std::size_t>(axes_)});
     ++i;
   }
@@ -86,9 +98,30 @@ void SensorPath::update_level(double revolution_s) noexcept {
   const double hop_s = watch_.hop_length() / rate_;
   const double wanted = std::ceil(std::max(kLevelSpan_s, 3.0 * revolution_s) / hop_s);
   const auto hops = static_cast<std::size_t>(std::min(wanted, double{kLevelHops}));
-  double sum = 0.0;
-  for (std::size_t h = 0; h < hops; ++h) sum += powers_[(newest_power_ + kLevelHops - h) % kLevelHops];
-  level_ = std::sqrt(sum / (static_cast<double>(hops) * watch_.hop_length()));
+  double whole = 0.0;
+  for (std::size_t h = 0; h < hops; ++h) whole += powers_[(newest_power_ + kLevelHops - h) % kLevelHops];
+  update_changes(revolution_s);
+  level_ = std::sqrt(whole / (static_cast<double>(hops) * watch_.hop_length()));
+  synchronous_level_ = revolution_s > 0.0 ? filter_.level() : level_;
+}
+
+void SensorPath::update_changes(double revolution_s) noexcept {
+  const double hop_s = watch_.hop_length() / rate_;
+  const auto span = std::min(kLevelHops, static_cast<std::size_t>(kFallSpan_s / hop_s));
+  const auto turn = std::min(span / 2, static_cast<std::size_t>(std::ceil(revolution_s / hop_s)) + 1);
+  const auto before = [&](std::size_t hops) { return powers_[(newest_power_ + kLevelHops - hops) % kLevelHops]; };
+  // From the oldest on: the most and the least that a revolution has held so far, beside what each holds.
+  double sum = 0.0, most = 0.0, least = kInfinity;
+  fall_ = rise_ = 1.0;
+  for (std::size_t h = span; h-- > 0;) {
+    sum += before(h);
+    if (h + turn < span) sum -= before(h + turn);
+    if (h + turn > span) continue;
+    most = std::max(most, sum);
+    least = std::min(least, sum);
+    if (sum > 0.0) fall_ = std::max(fall_, most / sum);
+    if (least > 0.0) rise_ = std::max(rise_, sum / least);
+  }
 }
 
 std::uint32_t SensorPath::doubts() const noexcept {

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "dsp/integrity.hpp"
 #include "dsp/line_watch.hpp"
 #include "dsp/signals.hpp"
+#include "dsp/slow_watch.hpp"
 #include "dsp/synchronous_filter.hpp"
 
 namespace stillcut {
@@ -35,10 +37,23 @@ class SensorPath {
   // Root mean square of the whole (not residual) signal without its mean, all axes together, over the last three
   // revolutions or 30 ms, m/s^2. A plain mean: it forgets a loud cut as soon as the cut is over.
   [[nodiscard]] double level() const noexcept { return level_; }
+  // The same of what repeats with the spindle alone.
+  [[nodiscard]] double synchronous_level() const noexcept { return synchronous_level_; }
+
+  // The largest fall and rise of power, from one revolution to any later one, within the last quarter of a second, as
+  // ratios. After a fall the tool has left the cut for a moment, or a knock has died out; after a rise it may have
+  // entered one: what rings now may be no more than that.
+  [[nodiscard]] double fall() const noexcept { return fall_; }
+  [[nodiscard]] double rise() const noexcept { return rise_; }
 
   [[nodiscard]] LineWatch& watch() noexcept { return watch_; }
   [[nodiscard]] const LineWatch& watch() const noexcept { return watch_; }
+  [[nodiscard]] SlowWatch& slow() noexcept { return slow_; }
+  [[nodiscard]] const SlowWatch& slow() const noexcept { return slow_; }
+  // True once for every step that slow() has completed since it was last asked.
+  bool take_slow_step() noexcept { return std::exchange(slow_stepped_, false); }
   [[nodiscard]] SynchronousFilter& filter() noexcept { return filter_; }
+  [[nodiscard]] const SynchronousFilter& filter() const noexcept { return filter_; }
   [[nodiscard]] double sample_rate_hz() const noexcept { return rate_; }
   [[nodiscard]] double bin_hz() const noexcept { return rate_ / watch_.window_length(); }
 
@@ -46,6 +61,7 @@ class SensorPath {
   static constexpr std::size_t kLevelHops = 128;
 
   void update_level(double revolution_s) noexcept;
+  void update_changes(double revolution_s) noexcept;
   void raise(std::uint32_t doubts) noexcept;
 
   double rate_;
@@ -55,14 +71,15 @@ class SensorPath {
   double revolutions_ = 0.0;  // spindle angle, 0..1
   SynchronousFilter filter_;
   LineWatch watch_;
-  std::array<float, kMaxAxes> mean_{};
+  SlowWatch slow_;
+  std::array<float, kMaxAxes> mean_{}, slow_sample_{};
   double hop_power_ = 0.0;                   // sum of squares in the present hop
   std::array<double, kLevelHops> powers_{};  // of the last hops, a ring
   std::size_t newest_power_ = 0;
-  double level_ = 0.0;
+  double level_ = 0.0, synchronous_level_ = 0.0, fall_ = 1.0, rise_ = 1.0;
   std::int64_t samples_ = 0;                               // processed so far
   std::array<std::int64_t, kDoubtCount> doubted_until_{};  // the sample at which each doubt has left the window
-  bool hop_complete_ = false;
+  bool hop_complete_ = false, slow_stepped_ = false;
 };
 
 }  // namespace stillcut

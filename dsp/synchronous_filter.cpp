@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace stillcut {
 namespace {
@@ -27,9 +28,17 @@ bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution
   knots_ = knots;
   std::fill(table_.begin(), table_.end(), 0.0F);
   usual_.fill(0.0F);
+  mean_.fill(0.0);
   restart();
   until_gain_ = 0;
   return true;
+}
+
+void SynchronousFilter::forget() noexcept {
+  for (std::size_t i = 0; i < table_.size(); ++i)
+    table_[i] = static_cast<float>(mean_[i % static_cast<std::size_t>(axes_)]);
+  usual_.fill(0.0F);
+  restart();
 }
 
 void SynchronousFilter::process(double angle, std::span<const float> x, std::span<float> residual) noexcept {
@@ -66,8 +75,50 @@ void SynchronousFilter::process(double angle, std::span<const float> x, std::spa
     usual_[a] += usual_gain_ * ((clipped ? limit : e * e) - usual_[a]);
     const float step = gain_ * (clipped ? std::copysign(std::sqrt(limit), e) : e);
     for (int i = 0; i < 4; ++i) c[i][a] += step * b[i];
+    mean_[a] += static_cast<double>(step) / knots_;
     residual[a] = e;
   }
+}
+
+double SynchronousFilter::level() const noexcept {
+  if (knots_ == 0) return 0.0;
+  double power = 0.0;
+  const auto axes = static_cast<std::size_t>(axes_), mask = static_cast<std::size_t>(knots_) - 1;
+  for (std::size_t k = 0; k <= mask; ++k) {
+    const float* const before = table_.data() + ((k + mask) & mask) * axes;
+    const float* const at = table_.data() + k * axes;
+    const float* const after = table_.data() + ((k + 1) & mask) * axes;
+    for (std::size_t a = 0; a < axes; ++a) {
+      const double smooth = 0.25 * (before[a] + 2.0F * at[a] + after[a]) - mean_[a];
+      power += smooth * smooth;
+    }
+  }
+  return std::sqrt(power / knots_);
+}
+
+double SynchronousFilter::displacement(double speed) const noexcept {
+  if (knots_ == 0 || !(speed > 0.0)) return 0.0;
+  const double step_s = 2.0 * std::numbers::pi / (speed * knots_);
+  double power = 0.0;
+  for (int a = 0; a < axes_; ++a) {
+    const auto at = [&](int k) { return static_cast<double>(table_[static_cast<std::size_t>(k) * axes_ + a]); };
+    double mean_acceleration = 0.0, velocity = 0.0, mean_velocity = 0.0;
+    for (int k = 0; k < knots_; ++k) mean_acceleration += at(k) / knots_;
+    for (int k = 0; k < knots_; ++k) {
+      velocity += (at(k) - mean_acceleration) * step_s;
+      mean_velocity += velocity / knots_;
+    }
+    double x = 0.0, sum = 0.0, square = 0.0;
+    velocity = 0.0;
+    for (int k = 0; k < knots_; ++k) {
+      velocity += (at(k) - mean_acceleration) * step_s;
+      x += (velocity - mean_velocity) * step_s;
+      sum += x / knots_;
+      square += x * x / knots_;
+    }
+    power += std::max(0.0, square - sum * sum);
+  }
+  return std::sqrt(power);
 }
 
 }  // namespace stillcut

@@ -27,6 +27,8 @@ class SynchronousFilter {
   // Memory in revolutions that learning settles to; right after restart() it learns as fast as the data allow.
   void set_memory(double revolutions) noexcept { memory_ = revolutions; }
   void restart() noexcept { learned_revolutions_ = 0.0; }
+  // Forgets all but the mean.
+  void forget() noexcept;
 
   // One sample of every axis at a spindle angle (revolutions, 0 <= angle < 1). residual[a] = x[a] - synchronous part.
   // Once learned, a step is held to what three times the usual residual would give, so that a knock is not learned and
@@ -34,6 +36,15 @@ class SynchronousFilter {
   void process(double angle, std::span<const float> x, std::span<float> residual) noexcept;
 
   [[nodiscard]] double learned_revolutions() const noexcept { return learned_revolutions_; }
+  // Mean of the repeating part over a revolution: gravity and whatever else is slower than the spindle. The residual
+  // plus this mean is the signal without the spindle's orders, and with what lies below them.
+  // Root mean square of what repeats, without its mean, over a revolution and all axes together. Smoothed over three
+  // knots: a sharp edge that is no longer there fades slowly between them.
+  [[nodiscard]] double level() const noexcept;
+  // How far what repeats moves the sensor: its acceleration integrated twice over the angle, root mean square of all
+  // axes together, times the square of the speed (rad/s) that it turns with; m, for samples in m/s^2.
+  [[nodiscard]] double displacement(double speed) const noexcept;
+  [[nodiscard]] float mean(int axis) const noexcept { return static_cast<float>(mean_[axis]); }
 
  private:
   static constexpr int kMinKnots = 32, kMaxKnots = 1024;
@@ -46,6 +57,7 @@ class SynchronousFilter {
   float gain_ = 0.0F, usual_gain_ = 0.0F;
   int until_gain_ = 0;                   // samples until the gain is worked out again
   std::array<float, kMaxAxes> usual_{};  // mean square of the residual
+  std::array<double, kMaxAxes> mean_{};  // of the table, kept up as it is learned
   std::vector<float> table_;             // [knot][axis]
 };
 

@@ -18,7 +18,7 @@ struct Gate {
 
   void hold(double level, double seconds, double speed = kSpeed) {
     for (double t = 0.0; t < seconds; t += kStep_s) {
-      const auto change = gate.step(level, speed, kStep_s);
+      const auto change = gate.step(level, level, speed, kStep_s);
       if (change != CutGate::Change::none) changes.push_back(change);
     }
   }
