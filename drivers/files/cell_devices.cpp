@@ -7,8 +7,8 @@ namespace stillcut {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s^2
-// Of [monitor]. Below 4 a window of noise alone often exceeds the limit, above 400 (26 dB) chatter leaves its marks
-// first.
+// Of [monitor]. At 4 (6 dB) noise alone gets there now and then; what stands 400 times (26 dB) above its past needs no
+// monitor.
 constexpr Bounds kDetectionLimit = from(4.0, 400.0), kReleaseRatio = from(0.05, 0.9);
 constexpr std::size_t kLongestInterfaceName = 15;  // IFNAMSIZ - 1
 
