@@ -38,8 +38,8 @@ inline constexpr double kOnsetBefore_s = 0.1, kFadesFor_s = 0.2;
 
 struct DetectionScore {
   int stretches = 0, detected = 0, false_alarms = 0;
-  double sound_s = 0.0;          // in the cut, where an onset would be false
-  std::vector<double> delays_s;  // of the detected, after the stretch's beginning; may be negative
+  double sound_s = 0.0;            // in the cut, where an onset would be false
+  std::vector<double> delays_s{};  // of the detected, after the stretch's beginning; may be negative
 
   DetectionScore& operator+=(const DetectionScore& other);
 
