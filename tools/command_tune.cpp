@@ -93,6 +93,7 @@ void print_tuning_json(const TuningResult& result, const std::vector<LabelledLog
   nlohmann::ordered_json roc = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.limits.size(); ++i) roc.push_back(limit_json(result, i));
   nlohmann::ordered_json chosen = limit_json(result, result.choice.limit);
+  chosen.erase("proved_below_per_hour");  // a choice proves nothing on the logs that it was made on
   chosen["release_ratio"] = result.release_ratio;
   chosen["wished_per_hour"] = result.wished_per_hour;
   chosen["wish_met"] = result.choice.wish_met;

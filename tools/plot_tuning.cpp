@@ -24,7 +24,7 @@ plot::Scatter chosen_mark(double x, double y, const char* label) {
 plot::Panel roc_panel(const TuningResult& result) {
   plot::Panel panel;
   panel.title = "Detected against false alarms, a point for each limit";
-  panel.y = {.label = "detected [%]", .min = 0.0, .max = 105.0};
+  panel.y = {.label = "detected [%]", .min = 0.0, .max = 118.0};
   plot::Line line = curve_line("", plot::kBlue);
   double most = 0.0;
   for (const DetectionScore& score : result.curve) {

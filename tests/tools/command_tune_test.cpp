@@ -75,10 +75,12 @@ TEST(TuneCommand, FindsALimitTellsItInEveryFormAndTheSameWhateverTheJobs) {
   EXPECT_EQ(chosen["detected"], 1);
   EXPECT_GT(chosen["delay_median_s"], -0.1);
   EXPECT_LT(chosen["delay_median_s"], 0.8);
-  EXPECT_NEAR(chosen["proved_below_per_hour"], proved_rate_per_hour(chosen["false_alarms"], chosen["hours"]), 1e-9);
-  EXPECT_EQ(result["cross_validated"]["stretches"], 1);
-  ASSERT_EQ(result["cross_validated"]["left_out"].size(), 3U);
-  EXPECT_EQ(result["cross_validated"]["left_out"][0]["log"], "deep.log");
+  const auto& validated = result["cross_validated"];
+  EXPECT_NEAR(validated["proved_below_per_hour"], proved_rate_per_hour(validated["false_alarms"], validated["hours"]),
+              1e-9);
+  EXPECT_EQ(validated["stretches"], 1);
+  ASSERT_EQ(validated["left_out"].size(), 3U);
+  EXPECT_EQ(validated["left_out"][0]["log"], "deep.log");
 
   const CsvTable curve = read_csv(logs.path() / "curve.csv");
   ASSERT_EQ(curve.rows().size(), 16U);
