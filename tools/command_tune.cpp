@@ -43,6 +43,7 @@ ScoresOfLogs hear_and_score(const TuneOptions& options, const Cell& cell, const 
   const NominalPrediction prediction = Predictor{cell}.nominal();
   if (!prediction.warning.empty()) std::cerr << "stillcut: " << prediction.warning << '\n';
   std::vector<std::filesystem::path> files;
+  files.reserve(labelled.size());
   for (const LabelledLog& log : labelled) files.push_back(log.file);
   Progress progress{"tuning"};
   const std::vector<HeardLog> heard =
