@@ -71,13 +71,13 @@ std::string cross_validated_lines(const TuningResult& result) {
 // What it would take to prove the wish, which is easily underrated.
 std::string proof_lines(const TuningResult& result) {
   const double hours = result.chosen().sound_hours();
-  std::string text = counted_logs(result) + " with " + rounded(hours) + " h of sound cutting prove little: even " +
-                     "without one false alarm only a rate below " + rounded(proved_rate_per_hour(0, hours)) +
-                     " an hour (rule of three).\n";
+  std::string text =
+      counted_logs(result) + " with " + rounded(hours) + " h of sound cutting can prove no more than a rate below " +
+      rounded(proved_rate_per_hour(0, hours)) + " an hour,\neven without one false alarm (rule of three).";
   if (result.wished_per_hour > 0.0)
-    text += "To prove at most " + rounded(result.wished_per_hour) + " an hour takes " +
-            rounded(proved_rate_per_hour(0, result.wished_per_hour)) + " h without one.\n";
-  return text;
+    text += " To prove at most " + rounded(result.wished_per_hour) + " an hour takes " +
+            rounded(proved_rate_per_hour(0, result.wished_per_hour)) + " h without one.";
+  return text + "\n";
 }
 
 }  // namespace
