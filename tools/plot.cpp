@@ -66,16 +66,20 @@ std::vector<Tick> y_ticks(const View& view) {
   return ticks_of(view.y, std::max(3, static_cast<int>(view.box.height() / 34)), view.logarithmic);
 }
 
-Range x_range(const Figure& figure) {
+const Axis& x_axis(const Figure& figure, const Panel& panel) { return panel.x ? *panel.x : figure.x; }
+
+// Of a panel's own axis, or of all panels that share the figure's.
+Range x_range(const Figure& figure, const Panel* own) {
   std::vector<const std::vector<double>*> data;
   std::vector<double> ends;
   for (const Panel& panel : figure.panels) {
+    if (own != nullptr ? &panel != own : panel.x.has_value()) continue;
     for (const Line& line : panel.lines) data.push_back(&line.x);
     for (const Scatter& points : panel.points) data.push_back(&points.x);
     if (panel.image) ends.insert(ends.end(), {panel.image->x_begin, panel.image->x_end});
   }
   data.push_back(&ends);
-  return axis_range(figure.x, data, 0.0);
+  return axis_range(own != nullptr ? *own->x : figure.x, data, 0.0);
 }
 
 Range y_range(const Panel& panel) {
@@ -223,19 +227,30 @@ void write_figure(const Figure& figure, const std::filesystem::path& file) {
   const auto room_above = [&](const Panel& panel) {
     return kBetween + kTitleRoom + legend_overhang(canvas, {kLeft, 0.0, right, 0.0}, panel);
   };
-  for (const Panel& panel : figure.panels) gaps += room_above(panel);
-  const double room = figure.height - top - kBottom - gaps;
-  const Range x = x_range(figure);
-  for (const Panel& panel : figure.panels) {
+  // An axis is written below the last of the panels that share it.
+  const auto shows_axis = [&](std::size_t p) {
+    return p + 1 == figure.panels.size() || figure.panels[p].x || figure.panels[p + 1].x;
+  };
+  for (std::size_t p = 0; p < figure.panels.size(); ++p)
+    gaps += room_above(figure.panels[p]) + (shows_axis(p) ? kBottom : 0.0);
+  const double room = figure.height - top - gaps;
+  const Range shared = x_range(figure, nullptr);
+  for (std::size_t p = 0; p < figure.panels.size(); ++p) {
+    const Panel& panel = figure.panels[p];
     top += room_above(panel);
     const double bottom = top + room * panel.height / shares;
-    const View view{{kLeft, top, right, bottom}, x, y_range(panel), panel.y.logarithmic, &figure.x.names};
+    const Axis& x = x_axis(figure, panel);
+    const View view{{kLeft, top, right, bottom},
+                    panel.x ? x_range(figure, &panel) : shared,
+                    y_range(panel),
+                    panel.y.logarithmic,
+                    &x.names};
     draw_data(canvas, view, panel);
-    draw_axes(canvas, view, panel, figure.x, &panel == &figure.panels.back());
+    draw_axes(canvas, view, panel, x, shows_axis(p));
     if (panel.image) draw_color_scale(canvas, view, *panel.image);
     draw_texts(canvas, view, panel);
     draw_legend(canvas, view.box, panel);
-    top = bottom;
+    top = bottom + (shows_axis(p) ? kBottom : 0.0);
   }
   canvas.finish();
 }

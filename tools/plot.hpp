@@ -93,7 +93,8 @@ struct Axis {
 struct Panel {
   std::string title;
   Axis y;
-  double height = 1.0;  // share of the figure's height, relative to the other panels
+  std::optional<Axis> x{};  // its own, where it shows something else than the figure's other panels
+  double height = 1.0;      // share of the figure's height, relative to the other panels
   std::optional<Image> image;
   std::vector<Band> bands;
   std::vector<Area> areas;
@@ -106,7 +107,7 @@ struct Panel {
 
 struct Figure {
   std::string title, subtitle;
-  Axis x;  // shared by all panels
+  Axis x;  // shared by all panels that have none of their own
   std::vector<Panel> panels;
   int width = 1200, height = 900;  // px; a .png has 1.5 times as many
 };

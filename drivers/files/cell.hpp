@@ -44,6 +44,13 @@ struct CanSettings {
   int line = 0;
 };
 
+// How readily chatter is called. What is left out is as the monitor's own defaults have it (dsp/monitor.hpp), so that
+// they stand in one place only.
+struct DetectionSettings {
+  std::optional<double> limit;          // of the statistic S: a line's power over its running floor
+  std::optional<double> release_ratio;  // of the limit: below it chatter has ended
+};
+
 struct Cell {
   std::filesystem::path file;  // as given on the command line
   // Sections that are absent stay empty: a command asks only for what it needs, through the require_* functions.
@@ -56,6 +63,7 @@ struct Cell {
   std::optional<CanSettings> can;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   RuntimeMode mode = RuntimeMode::shadow;
+  DetectionSettings detection;
 };
 
 // The files named in a cell that must be there. A command that needs fewer says so: `lobes` needs no CAN, and `replay`

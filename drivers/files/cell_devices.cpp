@@ -6,7 +6,10 @@
 namespace stillcut {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;       // m/s^2
+constexpr double kStandardGravity = 9.80665;  // m/s^2
+// Of [monitor]. At 4 (6 dB) noise alone gets there now and then; what stands 400 times (26 dB) above its past needs no
+// monitor.
+constexpr Bounds kDetectionLimit = from(4.0, 400.0), kReleaseRatio = from(0.05, 0.9);
 constexpr std::size_t kLongestInterfaceName = 15;  // IFNAMSIZ - 1
 
 std::filesystem::path absolute_path(const std::filesystem::path& folder, const std::string& path) {
@@ -179,6 +182,16 @@ RuntimeMode read_runtime_mode(TomlSection section) {
       RuntimeMode::shadow);
   section.finish();
   return mode;
+}
+
+DetectionSettings read_detection(TomlSection section) {
+  DetectionSettings detection;
+  const double limit = section.number("limit", kDetectionLimit, kDetectionLimit.min);
+  const double release_ratio = section.number("release_ratio", kReleaseRatio, kReleaseRatio.min);
+  section.finish();
+  if (section.has("limit")) detection.limit = limit;
+  if (section.has("release_ratio")) detection.release_ratio = release_ratio;
+  return detection;
 }
 
 }  // namespace stillcut

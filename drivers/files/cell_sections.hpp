@@ -21,5 +21,6 @@ DynamicsSettings read_dynamics(TomlSection section, const std::filesystem::path&
 CanSettings read_can(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs);
 std::string read_lcm_url(TomlSection section, const std::string& fallback);
 RuntimeMode read_runtime_mode(TomlSection section);
+DetectionSettings read_detection(TomlSection section);
 
 }  // namespace stillcut

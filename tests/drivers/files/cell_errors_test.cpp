@@ -25,6 +25,9 @@ struct Mistake {
   std::string from, to, at, key, words;
 };
 
+const std::string kModeLine = "mode = \"shadow\"            # * off | shadow | active\n";
+std::string with_monitor(const std::string& key) { return kModeLine + "[monitor]\n" + key + "\n"; }
+
 const std::vector<Mistake> kMistakes{
     // Unknown keys and tables.
     {"diameter_mm", "diamter_mm", "diamter_mm", "tool.diamter_mm", "did you mean diameter_mm?"},
@@ -115,6 +118,17 @@ const std::vector<Mistake> kMistakes{
     {"socketcan:can0", "local:a/b", "bus", "can.bus", "is no bus"},
     {"udpm://239", "udp://239", "url", "lcm.url", "is no LCM address"},
     {"mode = \"shadow\"", "mode = \"on\"", "mode = ", "runtime.mode", "give one of \"off, shadow, active\""},
+    {kModeLine, with_monitor("limit = 3.9"), "limit", "monitor.limit",
+     "3.9 is out of range; give a number from 4 to 400"},
+    {kModeLine, with_monitor("limit = 401"), "limit", "monitor.limit", "401 is out of range"},
+    {kModeLine, with_monitor("limit = nan"), "limit", "monitor.limit", "nan is out of range"},
+    {kModeLine, with_monitor("limit = \"16\""), "limit", "monitor.limit", "is text; give a number"},
+    {kModeLine, with_monitor("release_ratio = 0.04"), "release", "monitor.release_ratio",
+     "give a number from 0.05 to 0.9"},
+    {kModeLine, with_monitor("release_ratio = 0.91"), "release", "monitor.release_ratio", "0.91 is out of range"},
+    {kModeLine, with_monitor("release_ratio = [0.2]"), "release", "monitor.release_ratio", "is a list"},
+    {kModeLine, with_monitor("limits = 16"), "limits", "monitor.limits", "unknown key; did you mean limit?"},
+    {kModeLine, with_monitor("threshold = 16"), "threshold", "monitor.threshold", "known here: limit, release_ratio"},
     // Missing files.
     {"\"map\"", "\"no-such-map\"", "map = ", "dynamics.map", "no folder /"},
     {"\"map\"", "\"cell.dbc\"", "map = ", "dynamics.map", "cell.dbc is no folder"},

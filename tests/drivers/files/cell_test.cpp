@@ -96,6 +96,17 @@ TEST(Cell, ReadsCanLcmAndRuntimeOfTheExample) {
   EXPECT_EQ(cell.mode, RuntimeMode::shadow);
 }
 
+TEST(Cell, LeavesWhatMonitorDoesNotSayToTheMonitor) {
+  EXPECT_FALSE(read(kExampleCell).detection.limit.has_value());
+  EXPECT_FALSE(read(kExampleCell).detection.release_ratio.has_value());
+  const Cell limit_only = read("[monitor]\nlimit = 4\n");
+  EXPECT_EQ(limit_only.detection.limit, 4.0);
+  EXPECT_FALSE(limit_only.detection.release_ratio.has_value());
+  const Cell both = read("[monitor]\nlimit = 23.5\nrelease_ratio = 0.9\n");
+  EXPECT_EQ(both.detection.limit, 23.5);
+  EXPECT_EQ(both.detection.release_ratio, 0.9);
+}
+
 TEST(Cell, ReadsEveryOptionalKeyInSiUnits) {
   const Cell cell = read(R"(
 [tool]
