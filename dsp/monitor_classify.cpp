@@ -11,7 +11,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kLeastSteadiness = 0.15;  // of a line that has been there for more than the last quarter window
-constexpr double kBasePeak = 1.5, kNearMode = 0.2, kSameLine_hz = 8.0, kMovesMore = 1.5;  // of base_line
+constexpr double kBasePeak = 1.5, kNearAMode = 0.2, kSameLine_hz = 8.0, kMovesMore = 1.5;  // of base_line
 constexpr double kAccelerationCounts = 0.03;
 constexpr double kLeastBefore = 0.25;               // amplitude one revolution before over that now
 constexpr double kFrequencyDoubt_hz = 3.0;          // closer to an order a line is on it, as far as can be told
@@ -43,7 +43,7 @@ Tone Monitor::base_line(const SensorPath& path, int axis, const Tone& heard) con
     if (std::abs(mode_hz - heard.frequency_hz) < least_apart_hz || !(mode_hz > settings_.watch.lowest_hz)) continue;
     const double order = std::round((mode_hz - heard.frequency_hz) / spindle_hz);
     const double near_hz = heard.frequency_hz + order * spindle_hz;
-    if (order == 0.0 || std::abs(near_hz - mode_hz) > kNearMode * mode_hz) continue;
+    if (order == 0.0 || std::abs(near_hz - mode_hz) > kNearAMode * mode_hz) continue;
     const Tone tone = analyse_tone(path.watch().window(axis), path.sample_rate_hz(), near_hz);
     if (std::abs(tone.frequency_hz - near_hz) < kSameLine_hz && moves(tone) > kMovesMore * moves(base)) base = tone;
   }
