@@ -1,5 +1,6 @@
 #include "dsp/integrity.hpp"
 
+#include <bit>
 #include <cmath>
 
 namespace stillcut {
@@ -45,6 +46,30 @@ std::uint32_t SampleCheck::check(const SampleBlock& block, int i) noexcept {
     if (equal_[a] >= (x == 0.0F ? kZerosToBeDead : kEqualToBeStuck) && full_[a] == 0) doubts |= kStuck;
   }
   return doubts;
+}
+
+bool SampleCheck::beyond_doubt(const SampleBlock& block, int from, int to) noexcept {
+  constexpr std::uint32_t kExponent = 0x7F800000U;  // all ones in what is no number
+  std::array<int, kMaxAxes> equal{};
+  for (int a = 0; a < kMaxAxes; ++a) {
+    if ((block.axes_present >> a & 1U) == 0) continue;
+    if (full_[a] != 0 || block.full_scale[a] != 0) return false;
+    const float* const x = block.acceleration[a].data();
+    int repeated = x[from] == last_[a] ? 1 : 0, not_finite = 0;
+    for (int i = from + 1; i < to; ++i) repeated += x[i] == x[i - 1] ? 1 : 0;
+    for (int i = from; i < to; ++i) not_finite += (std::bit_cast<std::uint32_t>(x[i]) & kExponent) == kExponent ? 1 : 0;
+    // However they lie, this few equal neighbours make no run that is too long.
+    if (not_finite > 0 || equal_[a] + repeated >= kEqualToBeStuck) return false;
+    int same = from;
+    for (int i = to - 1; i > from && same == from; --i) same = x[i] == x[i - 1] ? from : i;
+    equal[a] = to - same + (same == from && x[from] == last_[a] ? equal_[a] : 0);
+  }
+  for (int a = 0; a < kMaxAxes; ++a) {
+    if ((block.axes_present >> a & 1U) == 0) continue;
+    equal_[a] = equal[a];
+    last_[a] = block.acceleration[a][to - 1];
+  }
+  return true;
 }
 
 void SampleCheck::forget_runs() noexcept {

@@ -41,7 +41,6 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       settings_{settings},
       fft_{length_},
       window_(length_),
-      windowed_(length_),
       spectrum_(bins_),
       inverse_limit_(bins_),
       ratio_(bins_, 0.0F),
@@ -63,6 +62,25 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
   set_prior({}, std::nan(""));
 }
 
+bool LineWatch::push(std::span<const Lanes> residual) noexcept {
+  if (filled_ == 0 && begin_ + kept_ + hop_ > 2 * kept_) make_room();
+  const int at = begin_ + kept_ + filled_;  // past the end: kept() stays whole until the hop is complete
+  for (int a = 0; a < axes_; ++a) {
+    float* const to = residual_[a].data() + at;
+    for (std::size_t i = 0; i < residual.size(); ++i) to[i] = residual[i][a];
+  }
+  filled_ += static_cast<int>(residual.size());
+  if (filled_ < hop_) return false;
+  finish_hop();
+  return true;
+}
+
+bool LineWatch::push(std::span<const float> residual) noexcept {
+  Lanes sample;
+  for (int a = 0; a < axes_; ++a) sample.set(a, residual[a]);
+  return push({&sample, 1});
+}
+
 void LineWatch::finish_hop() noexcept {
   begin_ += hop_;
   filled_ = 0;
@@ -82,11 +100,15 @@ void LineWatch::make_room() noexcept {
 }
 
 void LineWatch::transform() noexcept {
+  const float *const x = window(0).data(), *const y = window(axes_ > 1 ? 1 : 0).data(),
+                     *const z = window(axes_ > 2 ? 2 : 0).data();
+  const std::span<ComplexLanes> pairs = fft_.pairs();
+  const auto windowed = [&](std::size_t n) { return window_[n] * Lanes{x[n], y[n], z[n], 0.0F}; };
+  for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = {windowed(2 * n), windowed(2 * n + 1)};
+  fft_.power(first_, last_, spectrum_);
   for (int a = 0; a < axes_; ++a) {
-    const float* const newest = window(a).data();
-    for (int n = 0; n < length_; ++n) windowed_[n] = newest[n] * window_[n];
-    fft_.transform(windowed_, spectrum_);
-    for (int b = first_; b <= last_; ++b) power_[a][b] = power_scale_ * std::norm(spectrum_[b]);
+    float* const power = power_[a].data();
+    for (int b = first_; b <= last_; ++b) power[b] = power_scale_ * spectrum_[b][a];
   }
 }
 
@@ -108,7 +130,6 @@ float LineWatch::common_rise() const noexcept {
 void LineWatch::judge() noexcept {
   auto& newest = history_[history_at_];
   history_at_ = (history_at_ + 1) % kHopsToStay;
-  std::fill(newest.begin(), newest.end(), 0.0F);
   const float hop_s = static_cast<float>(hop_ / (bin_hz_ * length_));
   const float settled = 1.0F - std::exp(-hop_s / static_cast<float>(settings_.floor_memory_s));
   const float gain = floor_held_ ? 0.0F : std::max(settled, 1.0F / static_cast<float>(floor_hops_ + 1));
@@ -127,7 +148,7 @@ void LineWatch::judge() noexcept {
     for (int b = first_; b <= last_; ++b) {
       const float f = floor[b] > kTiniestFloor ? floor[b] : kTiniestFloor;
       const float standing_out = over_floor[b] * per_common;
-      s[b] = standing_out > s[b] ? standing_out : s[b];
+      s[b] = a > 0 && s[b] > standing_out ? s[b] : standing_out;
       const float seen = over_floor[b] < highest ? over_floor[b] : highest;
       floor[b] = f + gain * f * (seen - 1.0F);
     }
@@ -143,13 +164,14 @@ void LineWatch::judge() noexcept {
 void LineWatch::find_candidates() noexcept {
   std::array<int, kCandidates> peak{};
   found_ = 0;
+  float least = -1.0F;  // that a peak must pass: few do, so it is asked first
   for (int b = first_ + 1; b < last_; ++b) {
     const float ratio = ratio_[b];
-    if (ratio < ratio_[b - 1] || ratio <= ratio_[b + 1]) continue;
-    if (found_ == kCandidates && ratio <= ratio_[peak[found_ - 1]]) continue;
+    if (ratio <= least || ratio < ratio_[b - 1] || ratio <= ratio_[b + 1]) continue;
     std::size_t at = found_ < kCandidates ? found_++ : kCandidates - 1;
     for (; at > 0 && ratio_[peak[at - 1]] < ratio; --at) peak[at] = peak[at - 1];
     peak[at] = b;
+    if (found_ == kCandidates) least = ratio_[peak[kCandidates - 1]];
   }
   for (std::size_t c = 0; c < found_; ++c) {
     const int b = peak[c];

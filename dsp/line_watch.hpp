@@ -9,11 +9,11 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <span>
 #include <vector>
 
-#include "dsp/fft.hpp"
+#include "dsp/lanes.hpp"
+#include "dsp/lanes_fft.hpp"
 
 namespace stillcut {
 
@@ -44,15 +44,13 @@ class LineWatch {
 
   LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings);
 
-  // One residual sample of every axis; true when it completes a hop and the results below are new.
-  bool push(std::span<const float> residual) noexcept {
-    if (filled_ == 0 && begin_ + kept_ + hop_ > 2 * kept_) make_room();
-    const int at = begin_ + kept_ + filled_;  // past the end: kept() stays whole until the hop is complete
-    for (int a = 0; a < axes_; ++a) residual_[a][at] = residual[a];
-    if (++filled_ < hop_) return false;
-    finish_hop();
-    return true;
-  }
+  // Residual samples, a lane an axis, no more than to_hop(); true when they complete a hop and the results below are
+  // new.
+  bool push(std::span<const Lanes> residual) noexcept;
+  // One sample of every axis.
+  bool push(std::span<const float> residual) noexcept;
+  // Samples until the next hop is complete.
+  [[nodiscard]] int to_hop() const noexcept { return hop_ - filled_; }
 
   // Of the newest hop: the strongest separate lines, strongest first, and the largest S over its limit.
   [[nodiscard]] std::span<const LineCandidate> candidates() const noexcept { return {candidates_.data(), found_}; }
@@ -108,9 +106,9 @@ class LineWatch {
   int axes_, length_, kept_, hop_, bins_, first_, last_;  // lines are sought between bins first_ and last_
   double bin_hz_;
   LineWatchSettings settings_;
-  RealFft fft_;
-  std::vector<float> window_, windowed_;
-  std::vector<std::complex<float>> spectrum_;
+  LanesFft fft_;
+  std::vector<float> window_;
+  std::vector<Lanes> spectrum_;  // power
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;

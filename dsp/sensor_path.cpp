@@ -45,50 +45,78 @@ void SensorPath::skip(std::int64_t samples, double speed) noexcept {
     raise(kGap);
     return;
   }
-  const std::array<float, kMaxAxes> silence{};
+  const Lanes silence;
   for (std::int64_t i = 0; i < samples; ++i) {
-    watch_.push({silence.data(), static_cast<std::size_t>(axes_)});
-    if (slow_.push({slow_sample_.data(), static_cast<std::size_t>(axes_)})) slow_stepped_ = true;
+    watch_.push({&silence, 1});
+    if (slow_.push({&slow_sample_, 1})) slow_stepped_ = true;
   }
 }
 
+void SensorPath::look_for_doubts(const SampleBlock& block, int from, int to) noexcept {
+  const std::int64_t before = samples_;
+  if (!check_.beyond_doubt(block, from, to)) {
+    for (int i = from; i < to; ++i) {
+      ++samples_;
+      if (const std::uint32_t raised = check_.check(block, i); raised != kNoDoubt) raise(raised);
+    }
+  }
+  samples_ = before + (to - from);
+}
+
+void SensorPath::turn(double step, std::span<double> angles) noexcept {
+  double angle = revolutions_;
+  for (double& each : angles) {
+    angle += step;
+    if (angle >= 1.0) angle -= 1.0;
+    each = angle;
+  }
+  revolutions_ = angle;
+}
+
+void SensorPath::follow_mean(std::span<const Lanes> x, std::span<Lanes> alternating) noexcept {
+  const auto gain = static_cast<float>(1.0 / (kMeanMemory_s * rate_));
+  const Lanes zero;
+  Lanes mean = mean_, power;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Lanes off = where_finite(x[i], x[i] - mean, zero);
+    alternating[i] = off;
+    mean += gain * off;
+    const Lanes rest = where_finite(x[i], x[i] - mean, zero);
+    power += rest * rest;
+  }
+  mean_ = mean;
+  hop_power_ += sum(power);
+}
+
+// A stage at a time over all samples of the block that belong to one hop.
 int SensorPath::process(const SampleBlock& block, int from, double speed) noexcept {
   const bool turning = speed > kSlowestTurning;
   const double revolution_s = turning ? 2.0 * std::numbers::pi / speed : 0.0;
-  if (turning) {
-    filter_.set_samples_per_revolution(rate_ * revolution_s);
-  }
-  const auto mean_gain = static_cast<float>(1.0 / (kMeanMemory_s * rate_));
-  const double step = std::min(0.5, speed / (2.0 * std::numbers::pi * rate_));  // revolutions a sample
+  if (turning) filter_.set_samples_per_revolution(rate_ * revolution_s);
   hop_complete_ = false;
-  int i = from;
-  while (i < block.samples && !hop_complete_) {
-    ++samples_;
-    if (const std::uint32_t raised = check_.check(block, i); raised != kNoDoubt) raise(raised);
-    std::array<float, kMaxAxes> x{}, residual{};
-    for (int a = 0; a < axes_; ++a) x[a] = block.acceleration[axis_[a]][i];
-    revolutions_ += step;
-    if (revolutions_ >= 1.0) revolutions_ -= 1.0;
-    if (turning) {
-      filter_.process(revolutions_, {x.data(), static_cast<std::size_t>(axes_)}, residual);
-    } else {
-      for (int a = 0; a < axes_; ++a) residual[a] = std::isfinite(x[a]) ? x[a] - mean_[a] : 0.0F;
-    }
-    for (int a = 0; a < axes_; ++a) {
-      if (!std::isfinite(x[a])) continue;
-      mean_[a] += mean_gain * (x[a] - mean_[a]);
-      const float alternating = x[a] - mean_[a];
-      hop_power_ += alternating * alternating;
-    }
-    for (int a = 0; a < axes_; ++a) {
-      if (std::isfinite(x[a])) slow_sample_[a] = turning ? residual[a] + filter_.mean(a) : x[a];
-    }
-    if (slow_.push({slow_sample_.data(), static_cast<std::size_t>(axes_)})) slow_stepped_ = true;
-    hop_complete_ = watch_.push({residual.data(), static_cast<std::size_t>(axes_)});
-    ++i;
+  const int to = std::min<int>(block.samples, from + watch_.to_hop());
+  if (to <= from) return from;
+  look_for_doubts(block, from, to);
+
+  const auto n = static_cast<std::size_t>(to - from);
+  const std::span angles{angles_.data(), n};
+  const std::span x{x_.data(), n}, residual{residual_.data(), n}, slow{without_orders_.data(), n};
+  for (int a = 0; a < axes_; ++a) {
+    const float* const column = block.acceleration[axis_[a]].data() + from;
+    for (std::size_t i = 0; i < n; ++i) x[i].set(a, column[i]);
   }
+  turn(std::min(0.5, speed / (2.0 * std::numbers::pi * rate_)), angles);
+  follow_mean(x, residual);
+  if (turning) {
+    filter_.process(angles, x, residual, slow);
+  } else {
+    std::copy(x.begin(), x.end(), slow.begin());
+  }
+  for (std::size_t i = 0; i < n; ++i) slow[i] = slow_sample_ = where_finite(x[i], slow[i], slow_sample_);
+  if (slow_.push(slow)) slow_stepped_ = true;
+  hop_complete_ = watch_.push(residual);
   if (hop_complete_) update_level(revolution_s);
-  return i;
+  return to;
 }
 
 void SensorPath::update_level(double revolution_s) noexcept {
@@ -119,8 +147,8 @@ void SensorPath::update_changes(double revolution_s) noexcept {
     if (h + turn > span) continue;
     most = std::max(most, sum);
     least = std::min(least, sum);
-    if (sum > 0.0) fall_ = std::max(fall_, most / sum);
-    if (least > 0.0) rise_ = std::max(rise_, sum / least);
+    if (most > fall_ * sum && sum > 0.0) fall_ = most / sum;
+    if (sum > rise_ * least && least > 0.0) rise_ = sum / least;
   }
 }
 

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "dsp/integrity.hpp"
+#include "dsp/lanes.hpp"
 #include "dsp/line_watch.hpp"
 #include "dsp/signals.hpp"
 #include "dsp/slow_watch.hpp"
@@ -60,6 +62,10 @@ class SensorPath {
  private:
   static constexpr std::size_t kLevelHops = 128;
 
+  void look_for_doubts(const SampleBlock& block, int from, int to) noexcept;
+  void turn(double step, std::span<double> angles) noexcept;
+  // x without its mean goes to `alternating`; its power is part of the level.
+  void follow_mean(std::span<const Lanes> x, std::span<Lanes> alternating) noexcept;
   void update_level(double revolution_s) noexcept;
   void update_changes(double revolution_s) noexcept;
   void raise(std::uint32_t doubts) noexcept;
@@ -72,7 +78,10 @@ class SensorPath {
   SynchronousFilter filter_;
   LineWatch watch_;
   SlowWatch slow_;
-  std::array<float, kMaxAxes> mean_{}, slow_sample_{};
+  Lanes mean_, slow_sample_;
+  // What the stages hand on to each other.
+  std::array<double, kMaxSamplesPerBlock> angles_{};
+  std::array<Lanes, kMaxSamplesPerBlock> x_{}, residual_{}, without_orders_{};
   double hop_power_ = 0.0;                   // sum of squares in the present hop
   std::array<double, kLevelHops> powers_{};  // of the last hops, a ring
   std::size_t newest_power_ = 0;

@@ -68,24 +68,34 @@ void SlowWatch::clear() noexcept {
   forget_evidence();
 }
 
-void SlowWatch::thin_out(std::span<const float> x) noexcept {
+void SlowWatch::thin_out(std::span<const Lanes> x) noexcept {
   const float *const first = kernel_.data() + in_sample_, *const second = first + thinned_,
                      *const third = second + thinned_;
-  for (int a = 0; a < axes_; ++a) {
-    sums_[a][0] += *third * x[a];
-    sums_[a][1] += *second * x[a];
-    sums_[a][2] += *first * x[a];
+  std::array<Lanes, 3> sums = sums_;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sums[0] += third[i] * x[i];
+    sums[1] += second[i] * x[i];
+    sums[2] += first[i] * x[i];
   }
+  sums_ = sums;
+  in_sample_ += static_cast<int>(x.size());
 }
 
-bool SlowWatch::push(std::span<const float> x) noexcept {
-  thin_out(x);
-  if (++in_sample_ < thinned_) return false;
-  in_sample_ = 0;
-  for (int a = 0; a < axes_; ++a) {
-    history_[a][at_] = history_[a][at_ + kHistory] = sums_[a][0];
-    sums_[a] = {sums_[a][1], sums_[a][2], 0.0F};
+bool SlowWatch::push(std::span<const Lanes> x) noexcept {
+  bool stepped = false;
+  while (!x.empty()) {
+    const std::size_t n = std::min(x.size(), static_cast<std::size_t>(thinned_ - in_sample_));
+    thin_out(x.first(n));
+    x = x.subspan(n);
+    if (in_sample_ == thinned_) stepped = keep_thinned() || stepped;
   }
+  return stepped;
+}
+
+bool SlowWatch::keep_thinned() noexcept {
+  in_sample_ = 0;
+  for (int a = 0; a < axes_; ++a) history_[a][at_] = history_[a][at_ + kHistory] = sums_[0][a];
+  sums_ = {sums_[1], sums_[2], Lanes{}};
   at_ = (at_ + 1) % kHistory;
   ++samples_;
   if (++in_step_ < kStep) return false;

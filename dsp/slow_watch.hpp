@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "dsp/lanes.hpp"
 #include "dsp/signals.hpp"
 
 namespace stillcut {
@@ -29,9 +30,9 @@ class SlowWatch {
  public:
   SlowWatch(int axes, double sample_rate_hz);
 
-  // One sample of every axis, what repeats with the spindle taken out, gravity left in. True when it completes a step:
-  // then line() is new.
-  bool push(std::span<const float> x) noexcept;
+  // Samples, a lane an axis, what repeats with the spindle taken out, gravity left in. True when they complete a step:
+  // then the lines are new.
+  bool push(std::span<const Lanes> x) noexcept;
   [[nodiscard]] double step_s() const noexcept { return kStep * thinned_ / sample_rate_hz_; }
 
   // The line for which there is most evidence after the newest step, of all that `allowed(frequency in Hz)` lets pass.
@@ -70,7 +71,8 @@ class SlowWatch {
     SlowLine line;
   };
 
-  void thin_out(std::span<const float> x) noexcept;
+  void thin_out(std::span<const Lanes> x) noexcept;
+  bool keep_thinned() noexcept;
   void finish_step() noexcept;
   void listen(Band& band) noexcept;
   void judge(Band& band) noexcept;
@@ -79,7 +81,7 @@ class SlowWatch {
   int axes_, thinned_;
   double sample_rate_hz_;
   std::vector<float> kernel_;  // three parts of thinned_ weights each
-  std::array<std::array<float, 3>, kMaxAxes> sums_{};
+  std::array<Lanes, 3> sums_{};
   std::array<std::vector<float>, kMaxAxes> history_;  // 2 * kHistory, of which the newest kHistory are valid
   std::vector<Band> bands_;
   int in_sample_ = 0, at_ = 0, in_step_ = 0, step_ = 0;

@@ -11,11 +11,11 @@ namespace {
 constexpr double kRevolutionsUnclipped = 4.0;
 constexpr double kUsualMemory = 2.0;  // revolutions
 constexpr float kClip = 3.0F;         // times the usual residual
+constexpr float kSixth = 1.0F / 6.0F;
 
 }  // namespace
 
-SynchronousFilter::SynchronousFilter(int axes)
-    : axes_{axes}, table_(static_cast<std::size_t>(kMaxKnots) * axes, 0.0F) {}
+SynchronousFilter::SynchronousFilter(int axes) : axes_{axes}, table_(kMaxKnots) {}
 
 bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution) noexcept {
   samples_per_revolution_ = samples_per_revolution;
@@ -26,74 +26,104 @@ bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution
       knots_ > 0 && 0.8 * samples_per_revolution <= knots_ && knots_ <= 2.2 * samples_per_revolution;
   if (close_enough || knots == knots_) return false;
   knots_ = knots;
-  std::fill(table_.begin(), table_.end(), 0.0F);
-  usual_.fill(0.0F);
   mean_.fill(0.0);
-  restart();
+  forget();
   until_gain_ = 0;
   return true;
 }
 
 void SynchronousFilter::forget() noexcept {
-  for (std::size_t i = 0; i < table_.size(); ++i)
-    table_[i] = static_cast<float>(mean_[i % static_cast<std::size_t>(axes_)]);
-  usual_.fill(0.0F);
+  std::fill(table_.begin(), table_.end(), Lanes{mean(0), mean(1), mean(2), 0.0F});
+  usual_ = Lanes{};
   restart();
 }
 
-void SynchronousFilter::process(double angle, std::span<const float> x, std::span<float> residual) noexcept {
+void SynchronousFilter::update_gain() noexcept {
+  // The gain that forgets with the wanted memory; while little is learned the memory is what has been seen so far.
+  const double memory = std::clamp(learned_revolutions_ + 0.5, 1.0, memory_);
+  gain_ =
+      static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
+  usual_gain_ = static_cast<float>(1.0 / (kUsualMemory * samples_per_revolution_));
+  const int samples = std::max(8, static_cast<int>(samples_per_revolution_ / 4.0));
+  learned_revolutions_ += samples / samples_per_revolution_;
+  until_gain_ = samples + 1;
+}
+
+void SynchronousFilter::process(std::span<const double> angles, std::span<const Lanes> x, std::span<Lanes> residual,
+                                std::span<Lanes> without_orders) noexcept {
   if (knots_ == 0) {
-    for (int a = 0; a < axes_; ++a) residual[a] = std::isfinite(x[a]) ? x[a] : 0.0F;
+    for (std::size_t i = 0; i < x.size(); ++i) residual[i] = without_orders[i] = where_finite(x[i], x[i], Lanes{});
     return;
   }
-  if (--until_gain_ < 0) {
-    // The gain that forgets with the wanted memory; while little is learned the memory is what has been seen so far.
-    const double memory = std::clamp(learned_revolutions_ + 0.5, 1.0, memory_);
-    gain_ =
-        static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
-    usual_gain_ = static_cast<float>(1.0 / (kUsualMemory * samples_per_revolution_));
-    until_gain_ = std::max(8, static_cast<int>(samples_per_revolution_ / 4.0));
-    learned_revolutions_ += until_gain_ / samples_per_revolution_;
+  for (std::size_t done = 0; done < x.size();) {
+    if (until_gain_ == 0) update_gain();
+    const std::size_t n = std::min({x.size() - done, static_cast<std::size_t>(until_gain_), kStretch});
+    learn(angles.subspan(done, n), x.data() + done, residual.data() + done, without_orders.data() + done);
+    until_gain_ -= static_cast<int>(n);
+    done += n;
   }
-  const double position = angle * knots_;
-  const int k = static_cast<int>(position);
-  const auto f = static_cast<float>(position - k);
-  const float g = 1.0F - f;
-  const std::array<float, 4> b = {g * g * g / 6.0F, (3.0F * f * f * f - 6.0F * f * f + 4.0F) / 6.0F,
-                                  (3.0F * g * g * g - 6.0F * g * g + 4.0F) / 6.0F, f * f * f / 6.0F};
+}
+
+void SynchronousFilter::process(double angle, std::span<const float> x, std::span<float> residual) noexcept {
+  Lanes in, out, rest;
+  for (int a = 0; a < axes_; ++a) in.set(a, x[a]);
+  process({&angle, 1}, {&in, 1}, {&out, 1}, {&rest, 1});
+  for (int a = 0; a < axes_; ++a) residual[a] = out[a];
+}
+
+void SynchronousFilter::learn(std::span<const double> angles, const Lanes* x, Lanes* residual,
+                              Lanes* without_orders) noexcept {
+  // The splines' weights first, for they do not depend on what is learned on the way.
+  std::array<int, kStretch> knot;
+  std::array<std::array<float, kStretch>, 4> b;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double position = angles[i] * knots_;
+    const int k = static_cast<int>(position);
+    const auto f = static_cast<float>(position - k);
+    const float g = 1.0F - f;
+    knot[i] = k;
+    b[0][i] = kSixth * (g * g * g);
+    b[1][i] = kSixth * (3.0F * f * f * f - 6.0F * f * f + 4.0F);
+    b[2][i] = kSixth * (3.0F * g * g * g - 6.0F * g * g + 4.0F);
+    b[3][i] = kSixth * (f * f * f);
+  }
   const int mask = knots_ - 1;
-  std::array<float*, 4> c{};
-  for (int i = 0; i < 4; ++i) c[i] = table_.data() + static_cast<std::ptrdiff_t>((k + i) & mask) * axes_;
-  for (int a = 0; a < axes_; ++a) {
-    if (!std::isfinite(x[a])) {
-      residual[a] = 0.0F;
-      continue;
-    }
-    const float e = x[a] - (b[0] * c[0][a] + b[1] * c[1][a] + b[2] * c[2][a] + b[3] * c[3][a]);
-    const float limit = kClip * kClip * usual_[a];
-    const bool clipped = e * e > limit && learned_revolutions_ > kRevolutionsUnclipped;
-    usual_[a] += usual_gain_ * ((clipped ? limit : e * e) - usual_[a]);
-    const float step = gain_ * (clipped ? std::copysign(std::sqrt(limit), e) : e);
-    for (int i = 0; i < 4; ++i) c[i][a] += step * b[i];
-    mean_[a] += static_cast<double>(step) / knots_;
-    residual[a] = e;
+  const bool clips = learned_revolutions_ > kRevolutionsUnclipped;
+  const Lanes zero, mean_before{mean(0), mean(1), mean(2), 0.0F};
+  const float per_knot = 1.0F / static_cast<float>(knots_);
+  Lanes usual = usual_, learned;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const float b0 = b[0][i], b1 = b[1][i], b2 = b[2][i], b3 = b[3][i];
+    Lanes &c0 = table_[knot[i] & mask], &c1 = table_[(knot[i] + 1) & mask], &c2 = table_[(knot[i] + 2) & mask],
+          &c3 = table_[(knot[i] + 3) & mask];
+    const Lanes e = where_finite(x[i], x[i] - (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3), zero);
+    const Lanes limit = kClip * sqrt(usual);
+    const Lanes seen = clips ? max(zero - limit, min(e, limit)) : e;
+    usual += where_finite(x[i], usual_gain_ * (seen * seen - usual), zero);
+    const Lanes step = gain_ * seen;
+    c0 += b0 * step;
+    c1 += b1 * step;
+    c2 += b2 * step;
+    c3 += b3 * step;
+    learned += step;
+    residual[i] = e;
+    without_orders[i] = e + mean_before + per_knot * learned;
   }
+  usual_ = usual;
+  for (int a = 0; a < axes_; ++a) mean_[a] += static_cast<double>(learned[a]) / knots_;
 }
 
 double SynchronousFilter::level() const noexcept {
   if (knots_ == 0) return 0.0;
-  double power = 0.0;
-  const auto axes = static_cast<std::size_t>(axes_), mask = static_cast<std::size_t>(knots_) - 1;
-  for (std::size_t k = 0; k <= mask; ++k) {
-    const float* const before = table_.data() + ((k + mask) & mask) * axes;
-    const float* const at = table_.data() + k * axes;
-    const float* const after = table_.data() + ((k + 1) & mask) * axes;
-    for (std::size_t a = 0; a < axes; ++a) {
-      const double smooth = 0.25 * (before[a] + 2.0F * at[a] + after[a]) - mean_[a];
-      power += smooth * smooth;
-    }
+  const auto last = static_cast<std::size_t>(knots_) - 1;
+  const Lanes mean_now{mean(0), mean(1), mean(2), 0.0F};
+  Lanes power;
+  for (std::size_t k = 0; k <= last; ++k) {
+    const Lanes smooth =
+        0.25F * (table_[(k + last) & last] + 2.0F * table_[k] + table_[(k + 1) & last]) - mean_now;
+    power += smooth * smooth;
   }
-  return std::sqrt(power / knots_);
+  return std::sqrt(static_cast<double>(sum(power)) / knots_);
 }
 
 double SynchronousFilter::displacement(double speed) const noexcept {
@@ -101,7 +131,7 @@ double SynchronousFilter::displacement(double speed) const noexcept {
   const double step_s = 2.0 * std::numbers::pi / (speed * knots_);
   double power = 0.0;
   for (int a = 0; a < axes_; ++a) {
-    const auto at = [&](int k) { return static_cast<double>(table_[static_cast<std::size_t>(k) * axes_ + a]); };
+    const auto at = [&](int k) { return static_cast<double>(table_[static_cast<std::size_t>(k)][a]); };
     double mean_acceleration = 0.0, velocity = 0.0, mean_velocity = 0.0;
     for (int k = 0; k < knots_; ++k) mean_acceleration += at(k) / knots_;
     for (int k = 0; k < knots_; ++k) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "dsp/lanes.hpp"
 #include "dsp/signals.hpp"
 
 namespace stillcut {
@@ -30,24 +31,33 @@ class SynchronousFilter {
   // Forgets all but the mean.
   void forget() noexcept;
 
-  // One sample of every axis at a spindle angle (revolutions, 0 <= angle < 1). residual[a] = x[a] - synchronous part.
-  // Once learned, a step is held to what three times the usual residual would give, so that a knock is not learned and
-  // heard again each revolution. A sample that is not finite leaves the table as it is and gives a residual of 0.
+  // Samples, a lane an axis, each at a spindle angle (revolutions, 0 <= angle < 1). residual = x - synchronous part;
+  // without_orders = residual + mean(). Once learned, a step is held to what three times the usual residual would give,
+  // so that a knock is not learned and heard again each revolution. A sample that is not finite leaves the table as it
+  // is and gives a residual of 0.
+  void process(std::span<const double> angles, std::span<const Lanes> x, std::span<Lanes> residual,
+               std::span<Lanes> without_orders) noexcept;
+  // One sample of every axis.
   void process(double angle, std::span<const float> x, std::span<float> residual) noexcept;
 
   [[nodiscard]] double learned_revolutions() const noexcept { return learned_revolutions_; }
-  // Mean of the repeating part over a revolution: gravity and whatever else is slower than the spindle. The residual
-  // plus this mean is the signal without the spindle's orders, and with what lies below them.
   // Root mean square of what repeats, without its mean, over a revolution and all axes together. Smoothed over three
   // knots: a sharp edge that is no longer there fades slowly between them.
   [[nodiscard]] double level() const noexcept;
   // How far what repeats moves the sensor: its acceleration integrated twice over the angle, root mean square of all
   // axes together, times the square of the speed (rad/s) that it turns with; m, for samples in m/s^2.
   [[nodiscard]] double displacement(double speed) const noexcept;
+  // Mean of the repeating part over a revolution: gravity and whatever else is slower than the spindle. The residual
+  // plus this mean is the signal without the spindle's orders, and with what lies below them.
   [[nodiscard]] float mean(int axis) const noexcept { return static_cast<float>(mean_[axis]); }
 
  private:
   static constexpr int kMinKnots = 32, kMaxKnots = 1024;
+  static constexpr std::size_t kStretch = kMaxSamplesPerBlock;
+
+  void update_gain() noexcept;
+  // At most kStretch samples with the same gain.
+  void learn(std::span<const double> angles, const Lanes* x, Lanes* residual, Lanes* without_orders) noexcept;
 
   int axes_;
   int knots_ = 0;
@@ -56,9 +66,9 @@ class SynchronousFilter {
   double learned_revolutions_ = 0.0;
   float gain_ = 0.0F, usual_gain_ = 0.0F;
   int until_gain_ = 0;                   // samples until the gain is worked out again
-  std::array<float, kMaxAxes> usual_{};  // mean square of the residual
+  Lanes usual_;                          // mean square of the residual
   std::array<double, kMaxAxes> mean_{};  // of the table, kept up as it is learned
-  std::vector<float> table_;             // [knot][axis]
+  std::vector<Lanes> table_;             // the knots' coefficients
 };
 
 }  // namespace stillcut

@@ -28,9 +28,9 @@ void report(benchmark::State& state, double signal_s) {
       benchmark::Counter(signal_s * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
-void whole_monitor(benchmark::State& state, double chatter_hz) {
+void whole_monitor(benchmark::State& state, double rate_hz, double chatter_hz) {
   SyntheticCut cut;
-  cut.rate_hz = kRate_hz;
+  cut.rate_hz = rate_hz;
   cut.axes = kAxes;
   cut.duration_s = kSignal_s;
   cut.chatter.frequency_hz = chatter_hz;
@@ -118,8 +118,9 @@ void look_closely(benchmark::State& state) {
   }
 }
 
-BENCHMARK_CAPTURE(whole_monitor, stable, 0.0)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(whole_monitor, chatter, 730.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_monitor, stable, kRate_hz, 0.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_monitor, chatter, kRate_hz, 730.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_monitor, chatter_at_50_kHz, 50000.0, 730.0)->Unit(benchmark::kMillisecond);
 BENCHMARK(integrity)->Unit(benchmark::kMillisecond);
 BENCHMARK(synchronous_filter)->Unit(benchmark::kMillisecond);
 BENCHMARK(transform)->Unit(benchmark::kMicrosecond);
