@@ -1,9 +1,20 @@
 #include "dsp/integrity.hpp"
 
-#include <bit>
 #include <cmath>
 
 namespace stillcut {
+namespace {
+
+// How many samples at the end are equal, given the sample before the first and how many were equal there.
+int run_at_end(std::span<const Lanes> x, int lane, float before, int equal) noexcept {
+  for (const Lanes& now : x) {
+    equal = now[lane] == before ? equal + 1 : 1;
+    before = now[lane];
+  }
+  return equal;
+}
+
+}  // namespace
 
 const char* describe(Doubt single) noexcept {
   switch (single) {
@@ -48,26 +59,32 @@ std::uint32_t SampleCheck::check(const SampleBlock& block, int i) noexcept {
   return doubts;
 }
 
-bool SampleCheck::beyond_doubt(const SampleBlock& block, int from, int to) noexcept {
-  constexpr std::uint32_t kExponent = 0x7F800000U;  // all ones in what is no number
-  std::array<int, kMaxAxes> equal{};
+bool SampleCheck::beyond_doubt(const SampleBlock& block, std::span<const Lanes> x) noexcept {
+  std::array<int, kMaxAxes> axis{};  // of each lane
+  int axes = 0;
+  Lanes before;
   for (int a = 0; a < kMaxAxes; ++a) {
     if ((block.axes_present >> a & 1U) == 0) continue;
     if (full_[a] != 0 || block.full_scale[a] != 0) return false;
-    const float* const x = block.acceleration[a].data();
-    int repeated = x[from] == last_[a] ? 1 : 0, not_finite = 0;
-    for (int i = from + 1; i < to; ++i) repeated += x[i] == x[i - 1] ? 1 : 0;
-    for (int i = from; i < to; ++i) not_finite += (std::bit_cast<std::uint32_t>(x[i]) & kExponent) == kExponent ? 1 : 0;
-    // However they lie, this few equal neighbours make no run that is too long.
-    if (not_finite > 0 || equal_[a] + repeated >= kEqualToBeStuck) return false;
-    int same = from;
-    for (int i = to - 1; i > from && same == from; --i) same = x[i] == x[i - 1] ? from : i;
-    equal[a] = to - same + (same == from && x[from] == last_[a] ? equal_[a] : 0);
+    before.set(axes, last_[a]);
+    axis[axes++] = a;
   }
-  for (int a = 0; a < kMaxAxes; ++a) {
-    if ((block.axes_present >> a & 1U) == 0) continue;
-    equal_[a] = equal[a];
-    last_[a] = block.acceleration[a][to - 1];
+  Lanes repeated, not_finite;
+  const Lanes zero, one{1.0F};
+  for (const Lanes& now : x) {
+    repeated += where_equal(now, before, one, zero);
+    not_finite += where_finite(now, zero, one);
+    before = now;
+  }
+  // However they lie, this few equal neighbours make no run that is too long.
+  for (int lane = 0; lane < axes; ++lane) {
+    if (not_finite[lane] > 0.0F || equal_[axis[lane]] + repeated[lane] >= kEqualToBeStuck) return false;
+  }
+  for (int lane = 0; lane < axes; ++lane) {
+    int& equal = equal_[axis[lane]];
+    float& last = last_[axis[lane]];
+    equal = repeated[lane] > 0.0F ? run_at_end(x, lane, last, equal) : 1;
+    last = x.back()[lane];
   }
   return true;
 }

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
+#include "dsp/lanes.hpp"
 #include "dsp/signals.hpp"
 
 namespace stillcut {
@@ -30,9 +32,9 @@ class SampleCheck {
   // Looks at sample `i` of a block; returns the doubts that it raises (kSaturated, kStuck, kNotFinite). Real-time
   // thread.
   std::uint32_t check(const SampleBlock& block, int i) noexcept;
-  // Looks at samples `from` to `to` at once: true when none of them raises a doubt. False when one may; then nothing
-  // is remembered of them, and check() must look at each.
-  bool beyond_doubt(const SampleBlock& block, int from, int to) noexcept;
+  // Looks at several samples of a block at once, each present axis on a lane: true when none of them raises a doubt.
+  // False when one may; then nothing is remembered of them, and check() must look at each.
+  bool beyond_doubt(const SampleBlock& block, std::span<const Lanes> x) noexcept;
   void forget_runs() noexcept;
 
  private:

@@ -17,6 +17,8 @@ struct Lanes {
   explicit Lanes(float all) noexcept : v{all, all, all, all} {}
   Lanes(float a, float b, float c, float d) noexcept : v{a, b, c, d} {}
 
+  static Lanes load(const float* from) noexcept { return {from[0], from[1], from[2], from[3]}; }
+
   float operator[](int lane) const noexcept { return v[lane]; }
   void set(int lane, float x) noexcept { v[lane] = x; }
 
@@ -31,7 +33,10 @@ struct Lanes {
   friend Lanes sqrt(Lanes a) noexcept {
     return {std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])};
   }
-  // Lane by lane: `then` where x is finite, else `otherwise`.
+  // Lane by lane: `then` where it holds, else `otherwise`.
+  friend Lanes where_equal(Lanes a, Lanes b, Lanes then, Lanes otherwise) noexcept {
+    return a.v == b.v ? then.v : otherwise.v;
+  }
   friend Lanes where_finite(Lanes x, Lanes then, Lanes otherwise) noexcept {
     return x.v - x.v == 0.0F ? then.v : otherwise.v;
   }

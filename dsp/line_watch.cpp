@@ -163,15 +163,16 @@ void LineWatch::judge() noexcept {
 
 void LineWatch::find_candidates() noexcept {
   std::array<int, kCandidates> peak{};
+  const float* const ratios = ratio_.data();
   found_ = 0;
   float least = -1.0F;  // that a peak must pass: few do, so it is asked first
   for (int b = first_ + 1; b < last_; ++b) {
-    const float ratio = ratio_[b];
-    if (ratio <= least || ratio < ratio_[b - 1] || ratio <= ratio_[b + 1]) continue;
+    const float ratio = ratios[b];
+    if (ratio <= least || ratio < ratios[b - 1] || ratio <= ratios[b + 1]) continue;
     std::size_t at = found_ < kCandidates ? found_++ : kCandidates - 1;
-    for (; at > 0 && ratio_[peak[at - 1]] < ratio; --at) peak[at] = peak[at - 1];
+    for (; at > 0 && ratios[peak[at - 1]] < ratio; --at) peak[at] = peak[at - 1];
     peak[at] = b;
-    if (found_ == kCandidates) least = ratio_[peak[kCandidates - 1]];
+    if (found_ == kCandidates) least = ratios[peak[kCandidates - 1]];
   }
   for (std::size_t c = 0; c < found_; ++c) {
     const int b = peak[c];

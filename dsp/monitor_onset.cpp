@@ -112,10 +112,10 @@ void Monitor::look_for_standing_chatter(std::size_t index, std::int64_t stamp_ns
   constexpr int kHops = 12;
   SensorPath& path = sensors_[index].path;
   Suspect& standing = standing_[index];
-  LineCandidate candidate = path.watch().loudest_near_modes();
-  const bool loud = 0.5 * candidate.ratio * candidate.ratio > kShareOfEnergy * path.level() * path.level();
   const bool held = gate_.state() != State::air && gate_.state() != State::cut;
-  if (!loud || held || !(candidate.frequency_hz > 0.0)) {
+  LineCandidate candidate = held ? LineCandidate{} : path.watch().loudest_near_modes();
+  const bool loud = 0.5 * candidate.ratio * candidate.ratio > kShareOfEnergy * path.level() * path.level();
+  if (!loud || !(candidate.frequency_hz > 0.0)) {
     standing = {};
     return;
   }

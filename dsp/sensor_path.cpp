@@ -19,7 +19,8 @@ constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle wo
 
 SensorPath::SensorPath(const SensorSettings& sensor, const LineWatchSettings& watch)
     : rate_{sensor.sample_rate_hz},
-      axes_{std::popcount(static_cast<unsigned>(sensor.axes_present & 7U))},
+      axes_present_{static_cast<std::uint8_t>(sensor.axes_present & 7U)},
+      axes_{std::popcount(static_cast<unsigned>(axes_present_))},
       filter_{axes_},
       watch_{axes_, sensor.sample_rate_hz, watch},
       slow_{axes_, sensor.sample_rate_hz} {
@@ -52,15 +53,16 @@ void SensorPath::skip(std::int64_t samples, double speed) noexcept {
   }
 }
 
-void SensorPath::look_for_doubts(const SampleBlock& block, int from, int to) noexcept {
-  const std::int64_t before = samples_;
-  if (!check_.beyond_doubt(block, from, to)) {
-    for (int i = from; i < to; ++i) {
-      ++samples_;
-      if (const std::uint32_t raised = check_.check(block, i); raised != kNoDoubt) raise(raised);
-    }
+void SensorPath::look_for_doubts(const SampleBlock& block, int from, std::span<const Lanes> x) noexcept {
+  const int n = static_cast<int>(x.size());
+  if (block.axes_present == axes_present_ && check_.beyond_doubt(block, x)) {
+    samples_ += n;
+    return;
   }
-  samples_ = before + (to - from);
+  for (int i = from; i < from + n; ++i) {
+    ++samples_;
+    if (const std::uint32_t raised = check_.check(block, i); raised != kNoDoubt) raise(raised);
+  }
 }
 
 void SensorPath::turn(double step, std::span<double> angles) noexcept {
@@ -96,8 +98,6 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   hop_complete_ = false;
   const int to = std::min<int>(block.samples, from + watch_.to_hop());
   if (to <= from) return from;
-  look_for_doubts(block, from, to);
-
   const auto n = static_cast<std::size_t>(to - from);
   const std::span angles{angles_.data(), n};
   const std::span x{x_.data(), n}, residual{residual_.data(), n}, slow{without_orders_.data(), n};
@@ -105,6 +105,7 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
     const float* const column = block.acceleration[axis_[a]].data() + from;
     for (std::size_t i = 0; i < n; ++i) x[i].set(a, column[i]);
   }
+  look_for_doubts(block, from, x);
   turn(std::min(0.5, speed / (2.0 * std::numbers::pi * rate_)), angles);
   follow_mean(x, residual);
   if (turning) {

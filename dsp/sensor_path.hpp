@@ -62,7 +62,7 @@ class SensorPath {
  private:
   static constexpr std::size_t kLevelHops = 128;
 
-  void look_for_doubts(const SampleBlock& block, int from, int to) noexcept;
+  void look_for_doubts(const SampleBlock& block, int from, std::span<const Lanes> x) noexcept;
   void turn(double step, std::span<double> angles) noexcept;
   // x without its mean goes to `alternating`; its power is part of the level.
   void follow_mean(std::span<const Lanes> x, std::span<Lanes> alternating) noexcept;
@@ -71,6 +71,7 @@ class SensorPath {
   void raise(std::uint32_t doubts) noexcept;
 
   double rate_;
+  std::uint8_t axes_present_;
   int axes_;
   std::array<int, kMaxAxes> axis_{};  // columns of the block that this sensor fills
   SampleCheck check_;

@@ -51,14 +51,21 @@ SlowWatch::SlowWatch(int axes, double sample_rate_hz)
     double sum = 0.0;
     for (int n = 0; n < band.length; ++n) sum += 0.5 - 0.5 * std::cos(kFullTurn * (n + 0.5) / band.length);
     std::complex<double> mean = 0.0;
+    std::vector<std::complex<double>> window;
     for (int n = 0; n < band.length; ++n) {
       const double weight = (0.5 - 0.5 * std::cos(kFullTurn * (n + 0.5) / band.length)) * 2.0 / sum;
       const std::complex<double> w = std::polar(weight, -kFullTurn * hz / rate * n);
-      band.window.emplace_back(w);
+      window.push_back(w);
       mean += w;
     }
     mean /= band.length;  // gravity must leave nothing
-    for (auto& w : band.window) w -= std::complex<float>(mean);
+    const std::size_t whole = (window.size() + Lanes::kCount - 1) / Lanes::kCount * Lanes::kCount;
+    band.re.assign(whole - window.size(), 0.0F);
+    band.im = band.re;
+    for (const auto& w : window) {
+      band.re.push_back(static_cast<float>((w - mean).real()));
+      band.im.push_back(static_cast<float>((w - mean).imag()));
+    }
     bands_.push_back(std::move(band));
   }
 }
@@ -126,14 +133,21 @@ void SlowWatch::listen(Band& band) noexcept {
     now.fill(0.0F);
     return;
   }
-  for (int a = 0; a < axes_; ++a) {
-    const float* const newest = history_[a].data() + at_ + kHistory - band.length;
-    float re = 0.0F, im = 0.0F;
-    for (int n = 0; n < band.length; ++n) {
-      re += newest[n] * band.window[n].real();
-      im += newest[n] * band.window[n].imag();
+  // Four weights at once and all axes side by side, so that no sum waits for the last one; an absent axis is silent.
+  const std::size_t weights = band.re.size();
+  std::array<const float*, kMaxAxes> newest{};
+  for (int a = 0; a < kMaxAxes; ++a) newest[a] = history_[a].data() + at_ + kHistory - weights;
+  std::array<Lanes, kMaxAxes> re{}, im{};
+  for (std::size_t n = 0; n < weights; n += Lanes::kCount) {
+    const Lanes w_re = Lanes::load(&band.re[n]), w_im = Lanes::load(&band.im[n]);
+    for (int a = 0; a < kMaxAxes; ++a) {
+      const Lanes x = Lanes::load(newest[a] + n);
+      re[a] += x * w_re;
+      im[a] += x * w_im;
     }
-    now[a] = {re, im};
+  }
+  for (int a = 0; a < axes_; ++a) {
+    now[a] = {sum(re[a]), sum(im[a])};
     band.power += std::norm(now[a]);
   }
   const double learned = 1.0 / static_cast<double>(std::max(1L, floor_steps_));
