@@ -193,7 +193,7 @@ LineCandidate LineWatch::loudest_near_modes() const noexcept {
   float most = 0.0F;
   int axis = 0, bin = 0;
   for (int a = 0; a < axes_; ++a) {
-    for (int b = first_ + 1; b < last_; ++b) {
+    for (int b = near_first_; b <= near_last_; ++b) {
       if (near_mode_[b] == 0 || power_[a][b] <= most) continue;
       most = power_[a][b];
       axis = a;
@@ -234,6 +234,8 @@ void LineWatch::clear_window() noexcept {
 void LineWatch::set_prior(std::span<const ExpectedMode> modes, double margin) noexcept {
   // Predicted unstable: believe sooner; predicted stable with room: ask for more. At most a factor of two in power.
   const double by_margin = std::isnan(margin) ? 1.0 : std::clamp(1.0 + 0.5 * margin, 0.7, 1.4);
+  near_first_ = last_;
+  near_last_ = first_;
   for (int b = 0; b < bins_; ++b) {
     double by_mode = 1.0;
     near_mode_[b] = 0;
@@ -244,6 +246,10 @@ void LineWatch::set_prior(std::span<const ExpectedMode> modes, double margin) no
       const double width = mode.frequency_hz * (0.05 + 2.0 * mode.damping_ratio);
       const double away = std::abs(b * bin_hz_ - mode.frequency_hz) / width;
       by_mode = std::min(by_mode, away < 1.0 ? 0.7 : 1.0);
+    }
+    if (near_mode_[b] != 0 && b > first_ && b < last_) {
+      near_first_ = std::min(near_first_, b);
+      near_last_ = b;
     }
     inverse_limit_[b] = static_cast<float>(1.0 / (settings_.limit * by_mode * by_margin));
   }

@@ -108,11 +108,12 @@ class LineWatch {
   LineWatchSettings settings_;
   LanesFft fft_;
   std::vector<float> window_;
-  std::vector<Lanes> spectrum_;  // power
+  std::vector<Lanes> spectrum_;                                 // power
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;
-  std::vector<char> near_mode_;  // per bin
+  std::vector<char> near_mode_;          // per bin
+  int near_first_ = 0, near_last_ = -1;  // outside of these no bin is near a mode
   int begin_ = 0, filled_ = 0, hops_in_window_ = 0, history_at_ = 0, floor_hops_ = 0;
   float power_scale_;
   bool floor_held_ = false;

@@ -13,7 +13,8 @@ namespace {
 constexpr double kMeanMemory_s = 0.03;  // gravity, drift and slow feed force leave the level through this
 constexpr double kLevelSpan_s = 0.03;   // at least; three revolutions where those are longer
 constexpr double kFallSpan_s = 0.25;
-constexpr double kSlowestTurning = 1.0;  // rad/s: below it there is no angle worth following
+constexpr std::array<float, kMaxSamplesPerBlock> kNothing{};  // on the lanes of axes that are not there
+constexpr double kSlowestTurning = 1.0;                       // rad/s: below it there is no angle worth following
 
 }  // namespace
 
@@ -101,10 +102,9 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   const auto n = static_cast<std::size_t>(to - from);
   const std::span angles{angles_.data(), n};
   const std::span x{x_.data(), n}, residual{residual_.data(), n}, slow{without_orders_.data(), n};
-  for (int a = 0; a < axes_; ++a) {
-    const float* const column = block.acceleration[axis_[a]].data() + from;
-    for (std::size_t i = 0; i < n; ++i) x[i].set(a, column[i]);
-  }
+  std::array<const float*, kMaxAxes> column;
+  for (int a = 0; a < kMaxAxes; ++a) column[a] = a < axes_ ? &block.acceleration[axis_[a]][from] : kNothing.data();
+  for (std::size_t i = 0; i < n; ++i) x[i] = {column[0][i], column[1][i], column[2][i], 0.0F};
   look_for_doubts(block, from, x);
   turn(std::min(0.5, speed / (2.0 * std::numbers::pi * rate_)), angles);
   follow_mean(x, residual);

@@ -63,7 +63,7 @@ class SlowWatch {
 
   struct Band {
     double frequency_hz = 0.0;
-    int length = 0;  // thinned samples, two cycles
+    int length = 0;             // thinned samples, two cycles
     std::vector<float> re, im;  // window: `length` weights, after zeros that make their number a multiple of 4
     std::array<std::array<std::complex<float>, kMaxAxes>, kStepsKept> heard{};
     std::complex<double> turned;  // phasor of a cycle's turn, over the last steps

@@ -119,8 +119,7 @@ double SynchronousFilter::level() const noexcept {
   const Lanes mean_now{mean(0), mean(1), mean(2), 0.0F};
   Lanes power;
   for (std::size_t k = 0; k <= last; ++k) {
-    const Lanes smooth =
-        0.25F * (table_[(k + last) & last] + 2.0F * table_[k] + table_[(k + 1) & last]) - mean_now;
+    const Lanes smooth = 0.25F * (table_[(k + last) & last] + 2.0F * table_[k] + table_[(k + 1) & last]) - mean_now;
     power += smooth * smooth;
   }
   return std::sqrt(static_cast<double>(sum(power)) / knots_);
