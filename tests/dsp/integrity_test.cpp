@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 namespace stillcut {
@@ -82,6 +85,37 @@ TEST(SampleCheck, ForgetsRunsAtAGap) {
   for (int i = 0; i < 7; ++i) EXPECT_EQ(check.check(block, 0), kNoDoubt);
   check.forget_runs();
   for (int i = 0; i < 7; ++i) EXPECT_EQ(check.check(block, 0), kNoDoubt);
+}
+
+// Coarse values hold for a while now and then, on axes that come and go with no number or at the end of the range.
+TEST(SampleCheck, ClearsARunOfSamplesOnlyWhenEachOfThemIsClear) {
+  constexpr int kBlocks = 20000, kRun = 10;
+  std::mt19937 random{1};
+  const auto one_in = [&random](unsigned n) { return random() % n == 0; };
+  SampleCheck each, run;
+  SampleBlock block;
+  block.axes_present = 0b101;
+  block.samples = kRun;
+  int cleared = 0, doubtful = 0;
+  float coarseness = 2.0F;
+  for (int n = 0; n < kBlocks; ++n) {
+    if (one_in(20)) coarseness = one_in(2) ? 1.0F : 1000.0F;
+    for (float& x : block.acceleration[0]) x = static_cast<float>(random() % 1000) / 1000.0F;
+    for (float& x : block.acceleration[2]) x = std::floor(static_cast<float>(random() % 1000) / 800.0F * coarseness);
+    if (one_in(50)) block.acceleration[0][random() % kRun] = std::numeric_limits<float>::infinity();
+    block.full_scale[2] = one_in(50) ? 7U << random() % 8 : 0U;
+    std::array<Lanes, kRun> x{};
+    for (int i = 0; i < kRun; ++i) x[i] = {block.acceleration[0][i], block.acceleration[2][i], 0.0F, 0.0F};
+    std::uint32_t expected = kNoDoubt, raised = kNoDoubt;
+    for (int i = 0; i < kRun; ++i) expected |= each.check(block, i);
+    const bool clear = run.beyond_doubt(block, x);
+    for (int i = 0; i < kRun && !clear; ++i) raised |= run.check(block, i);
+    ASSERT_EQ(raised, expected) << n;
+    cleared += clear ? 1 : 0;
+    doubtful += expected != kNoDoubt ? 1 : 0;
+  }
+  EXPECT_GT(cleared, kBlocks / 10);
+  EXPECT_GT(doubtful, kBlocks / 100);
 }
 
 TEST(Doubts, AllHaveWords) {
