@@ -102,7 +102,7 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   const auto n = static_cast<std::size_t>(to - from);
   const std::span angles{angles_.data(), n};
   const std::span x{x_.data(), n}, residual{residual_.data(), n}, slow{without_orders_.data(), n};
-  std::array<const float*, kMaxAxes> column;
+  std::array<const float*, kMaxAxes> column{};
   for (int a = 0; a < kMaxAxes; ++a) column[a] = a < axes_ ? &block.acceleration[axis_[a]][from] : kNothing.data();
   for (std::size_t i = 0; i < n; ++i) x[i] = {column[0][i], column[1][i], column[2][i], 0.0F};
   look_for_doubts(block, from, x);

@@ -74,18 +74,17 @@ void SynchronousFilter::process(double angle, std::span<const float> x, std::spa
 void SynchronousFilter::learn(std::span<const double> angles, const Lanes* x, Lanes* residual,
                               Lanes* without_orders) noexcept {
   // The splines' weights first, for they do not depend on what is learned on the way.
-  std::array<int, kStretch> knot;
-  std::array<std::array<float, kStretch>, 4> b;
+  const int knots = knots_;
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    const double position = angles[i] * knots_;
+    const double position = angles[i] * knots;
     const int k = static_cast<int>(position);
     const auto f = static_cast<float>(position - k);
     const float g = 1.0F - f;
-    knot[i] = k;
-    b[0][i] = kSixth * (g * g * g);
-    b[1][i] = kSixth * (3.0F * f * f * f - 6.0F * f * f + 4.0F);
-    b[2][i] = kSixth * (3.0F * g * g * g - 6.0F * g * g + 4.0F);
-    b[3][i] = kSixth * (f * f * f);
+    knot_[i] = k;
+    weights_[0][i] = kSixth * (g * g * g);
+    weights_[1][i] = kSixth * (3.0F * f * f * f - 6.0F * f * f + 4.0F);
+    weights_[2][i] = kSixth * (3.0F * g * g * g - 6.0F * g * g + 4.0F);
+    weights_[3][i] = kSixth * (f * f * f);
   }
   const int mask = knots_ - 1;
   const bool clips = learned_revolutions_ > kRevolutionsUnclipped;
@@ -93,9 +92,10 @@ void SynchronousFilter::learn(std::span<const double> angles, const Lanes* x, La
   const float per_knot = 1.0F / static_cast<float>(knots_);
   Lanes usual = usual_, learned;
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    const float b0 = b[0][i], b1 = b[1][i], b2 = b[2][i], b3 = b[3][i];
-    Lanes &c0 = table_[knot[i] & mask], &c1 = table_[(knot[i] + 1) & mask], &c2 = table_[(knot[i] + 2) & mask],
-          &c3 = table_[(knot[i] + 3) & mask];
+    const int k = knot_[i];
+    const float b0 = weights_[0][i], b1 = weights_[1][i], b2 = weights_[2][i], b3 = weights_[3][i];
+    Lanes &c0 = table_[k & mask], &c1 = table_[(k + 1) & mask], &c2 = table_[(k + 2) & mask],
+          &c3 = table_[(k + 3) & mask];
     const Lanes e = where_finite(x[i], x[i] - (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3), zero);
     const Lanes limit = kClip * sqrt(usual);
     const Lanes seen = clips ? max(zero - limit, min(e, limit)) : e;

@@ -69,6 +69,9 @@ class SynchronousFilter {
   Lanes usual_;                          // mean square of the residual
   std::array<double, kMaxAxes> mean_{};  // of the table, kept up as it is learned
   std::vector<Lanes> table_;             // the knots' coefficients
+  // Of a stretch of samples: the first of the four knots that each lies between, and their weights.
+  std::array<int, kStretch> knot_{};
+  std::array<std::array<float, kStretch>, 4> weights_{};
 };
 
 }  // namespace stillcut

@@ -91,11 +91,14 @@ int main() {
   });
   const double transform = median_s([&] {
     LineWatch watch{kMaxAxes, sensor.sample_rate_hz, {}};
-    std::array<float, kMaxAxes> sample{};
+    std::array<Lanes, kMaxSamplesPerBlock> samples{};
     for (const SampleBlock& block : blocks) {
-      for (int i = 0; i < block.samples; ++i) {
-        for (int a = 0; a < kMaxAxes; ++a) sample[a] = block.acceleration[a][i];
-        watch.push(sample);
+      for (int from = 0, to = 0; from < block.samples; from = to) {
+        to = std::min<int>(block.samples, from + watch.to_hop());
+        for (int i = from; i < to; ++i) {
+          samples[i - from] = {block.acceleration[0][i], block.acceleration[1][i], block.acceleration[2][i], 0.0F};
+        }
+        watch.push(std::span{samples}.first(static_cast<std::size_t>(to - from)));
       }
     }
     sink = sink + watch.largest_ratio();
@@ -118,5 +121,5 @@ int main() {
   print_row("transform (FFT, floor, lines)", transform, whole);
   print_row("decide (the rest of the core)", whole - parse - decode - filter_and_transform, whole);
   print_row("whole chain", whole, whole);
-  std::printf("%.0f x real time (target 100)\n", kSignal_s / whole);
+  std::printf("%.0f x real time (target 200)\n", kSignal_s / whole);
 }
