@@ -31,7 +31,7 @@ class LanesFft {
   [[nodiscard]] int length() const noexcept { return length_; }
   [[nodiscard]] int bins() const noexcept { return length_ / 2 + 1; }
 
-  // Where to put the length() samples, even ones in re, odd ones in im; power() spoils them.
+  // Where to put the length() samples, even ones in re, odd ones in im. To be asked anew before each power().
   [[nodiscard]] std::span<ComplexLanes> pairs() noexcept { return work_; }
   // power[k] = |X[k]|^2 for first <= k <= last < bins(), X[k] = sum x[n] exp(-2 pi i k n / length).
   void power(int first, int last, std::span<Lanes> power) noexcept;
