@@ -138,6 +138,8 @@ class Monitor {
   double structural_below_s_ = 0.0;
   // The episode of chatter that is open.
   std::size_t chatter_sensor_ = 0;
+  double heard_hz_ = 0.0;  // of its line in the newest hop; the view gives a running mean
+  int hops_heard_ = 0;
   double smooth_ratio_ = 0.0, below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
   double largest_amplitude_ = 0.0;
   bool faded_ = false;

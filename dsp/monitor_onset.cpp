@@ -143,7 +143,8 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   }
   view_.chatter = true;
   view_.kind = line == Line::free ? name_kind(tone.frequency_hz) : ChatterKind::unknown;
-  view_.chatter_frequency_hz = tone.frequency_hz;
+  view_.chatter_frequency_hz = heard_hz_ = tone.frequency_hz;
+  hops_heard_ = 1;
   view_.chatter_amplitude = tone.amplitude;
   view_.indicator = std::sqrt(candidate.ratio);
   chatter_sensor_ = index;
