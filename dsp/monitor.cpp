@@ -19,7 +19,7 @@ constexpr double kFilterRevolutions = 4.0;
 constexpr double kOnOrder_hz = 3.0;         // nearer to an order a line cannot be told from it
 constexpr int kHopsToBelong = 16;           // half a release time
 constexpr double kFaded = 0.1;              // of the largest amplitude of the episode
-constexpr int kFrequencyHops = 8;          // of the running mean of its frequency
+constexpr int kFrequencyHops = 8;           // of the running mean of its frequency
 constexpr double kReleaseSmoothing = 0.25;  // a hop
 constexpr double kFilterSlowdown = 8.0;     // in chatter, so that it is not learned as synchronous
 
@@ -173,7 +173,7 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
     for (Sensor& each : sensors_) each.path.filter().restart();
   }
   faded_ = faded;
-  if (view_.kind == ChatterKind::unknown && free_hops_ >= 2) {
+  if (view_.kind == ChatterKind::unknown && view_.single_line && free_hops_ >= 2) {
     const ChatterKind kind = name_kind(view_.chatter_frequency_hz);
     if (kind != ChatterKind::unknown) {
       view_.kind = kind;

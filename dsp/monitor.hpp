@@ -38,6 +38,7 @@ struct MonitorView {
   double speed = 0.0;      // measured, rad/s
   bool chatter = false;    // of the tool
   ChatterKind kind = ChatterKind::unknown;
+  bool single_line = true;               // false: chatter in which the tool is thrown about, with no line to answer
   double chatter_frequency_hz = 0.0;     // NaN without chatter
   double chatter_amplitude = 0.0;        // m/s^2
   bool structural = false;               // chatter of the robot's structure, by itself or beside the tool's
