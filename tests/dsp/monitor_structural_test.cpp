@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/dsp/synthetic_cut.hpp"
@@ -10,14 +11,12 @@
 namespace stillcut {
 namespace {
 
-constexpr double kGravity = 9.81;
-
 // A line of 12 Hz that is loud at two seconds, dies from 2.1 s on and is gone a second later.
 SyntheticCut structural_cut() {
   SyntheticCut cut;
   cut.rate_hz = 10000.0;
   cut.duration_s = 3.2;
-  cut.gravity = kGravity;
+  cut.gravity = 9.81;
   cut.slow = {12.0, 0.9, 1.4, 3.0, 2.1, 0.7};
   return cut;
 }
@@ -36,13 +35,8 @@ std::vector<Event> of_kind(const std::vector<Event>& events, EventType type, Cha
   return found;
 }
 
-struct Sensor {
-  double rate_hz;
-  int axes;
-};
-
 TEST(MonitorStructural, CallsALineThatGrowsNearAModeOnceAndSaysWhenItHasDied) {
-  for (const auto& [rate_hz, axes] : {Sensor{10000.0, 1}, {10000.0, 3}, {25600.0, 2}, {50000.0, 1}}) {
+  for (const auto& [rate_hz, axes] : {std::pair{10000.0, 1}, {10000.0, 3}, {25600.0, 2}, {50000.0, 1}}) {
     for (const double mode_hz : {10.0, 14.0}) {
       SyntheticCut cut = structural_cut();
       cut.rate_hz = rate_hz;
@@ -151,7 +145,7 @@ TEST(MonitorStructural, CallsNothingOutOfTheCut) {
 }
 
 // What holds for a mapped mode holds for others, of which more is asked.
-void expect_quiet(SyntheticCut cut, double mode_hz) {
+void expect_no_chatter(SyntheticCut cut, double mode_hz) {
   for (const Event& event : only(play_with_modes(cut, {{mode_hz, 0.02}}), EventType::chatter_onset)) {
     ADD_FAILURE() << "seed " << cut.seed << ", mode " << mode_hz << " Hz: chatter at " << seconds(event) << " s, "
                   << event.frequency_hz << " Hz";
@@ -164,7 +158,7 @@ TEST(MonitorStructural, CallsNoMotionOfTheRobotChatter) {
       SyntheticCut cut = structural_cut();
       cut.rate_hz = 5000.0;
       cut.slow = {hz, 0.9, 50.0, 1.0, 2.5, 0.5};
-      expect_quiet(cut, mode_hz);
+      expect_no_chatter(cut, mode_hz);
     }
   }
 }
@@ -178,10 +172,10 @@ TEST(MonitorStructural, CallsNoModeChatterThatAnEntryOrAKnockRings) {
       cut.seed = seed;
       const double hz = 6.5 + 2.1 * seed;
       cut.slow = {hz, 0.5, 1.0, 300.0, 0.5, a_cycle};  // 3 m/s^2 at once
-      expect_quiet(cut, 1.02 * hz);
+      expect_no_chatter(cut, 1.02 * hz);
       cut.slow.start_s = cut.slow.stop_s = 1.5 + 0.004 * seed;
       cut.knocks_s = {cut.slow.start_s};
-      expect_quiet(cut, 1.02 * hz);
+      expect_no_chatter(cut, 1.02 * hz);
     }
   }
 }

@@ -10,16 +10,16 @@
 namespace stillcut {
 namespace {
 
-constexpr double kFullTurn = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kGravity = 9.81;
 constexpr double kDensity = 0.0095;  // of the noise: standard deviation over the root of the sample rate
 constexpr double kSettled_s = 1.0;   // the noise is known
 constexpr double kStep_s = 1.3;
 
 // Evidence that a sudden start alone does not gather, though a window that fills shows a line that grows.
-constexpr double kEnough = 1.0;
+constexpr double kEnoughToCall = 1.0;
 
-bool any(double) { return true; }
+bool any_line(double) { return true; }
 
 // Amplitude at which a line of one axis stands out of such noise.
 double standing_out(double hz) { return 6.0 * kDensity * std::sqrt(hz); }
@@ -48,7 +48,7 @@ class Listener {
   double most_evidence(double to_s, Signal&& signal) {
     double most = 0.0;
     hear(to_s, signal, [&](double t) {
-      if (t > kSettled_s) most = std::max(most, watch.best_line(any).evidence);
+      if (t > kSettled_s) most = std::max(most, watch.best_line(any_line).evidence);
     });
     return most;
   }
@@ -67,7 +67,7 @@ class Listener {
 auto growing(double hz, double a_cycle, double out_s) {
   return [=](double t, int axis) {
     const double amplitude = std::min(30.0, standing_out(hz) * std::pow(a_cycle, hz * (t - out_s)));
-    return amplitude * (axis == 0 ? 1.0 : 0.6) * std::sin(kFullTurn * hz * t + axis);
+    return amplitude * (axis == 0 ? 1.0 : 0.6) * std::sin(kTurn * hz * t + axis);
   };
 }
 
@@ -80,7 +80,7 @@ Found find(Listener& listener, double hz, double a_cycle, double out_s) {
   Found found;
   double at_s = 1e9;
   listener.hear(out_s + 30.0 / hz, growing(hz, a_cycle, out_s), [&](double t) {
-    const SlowLine line = listener.watch.best_line(any);
+    const SlowLine line = listener.watch.best_line(any_line);
     if (at_s > t && t > kSettled_s && line.evidence >= 1.0) {
       at_s = t;
       found = {(t - out_s) * hz, line.frequency_hz, 0.0};
@@ -140,10 +140,10 @@ TEST(SlowWatch, LeavesAModeThatRingsDownAlone) {
           const auto step = [&](double t, int axis) {
             const double since = t - kStep_s;
             if (since < 0.0) return 0.0;
-            const double ringing = 5.0 * std::pow(a_cycle, hz * since) * std::sin(kFullTurn * hz * since + phase);
+            const double ringing = 5.0 * std::pow(a_cycle, hz * since) * std::sin(kTurn * hz * since + phase);
             return 0.3 + (axis == 0 ? 1.0 : 0.6) * ringing;
           };
-          EXPECT_LT(listener.most_evidence(kStep_s + 8.0 / hz, step), kEnough)
+          EXPECT_LT(listener.most_evidence(kStep_s + 8.0 / hz, step), kEnoughToCall)
               << hz << " Hz, " << a_cycle << ", axes " << axes;
         }
       }
@@ -158,14 +158,14 @@ TEST(SlowWatch, LeavesTwoModesThatBeatWhileTheyRingDownAlone) {
       for (const double a_cycle : {0.7, 0.85, 0.93, 0.97}) {
         const auto ringing = [&](double t, double at_hz) {
           const double cycles = at_hz * (t - kStep_s);
-          return cycles < 0.0 ? 0.0 : 5.0 * std::pow(a_cycle, cycles) * std::sin(kFullTurn * cycles);
+          return cycles < 0.0 ? 0.0 : 5.0 * std::pow(a_cycle, cycles) * std::sin(kTurn * cycles);
         };
         const auto both = [&](double t, int axis) {
           const double one = ringing(t, hz), other = ringing(t, apart * hz);
           return std::numbers::sqrt2 / 2.0 * (axis == 0 ? one - other : one + other);
         };
         Listener listener{2, 1000.0};
-        EXPECT_LT(listener.most_evidence(kStep_s + 1.5, both), kEnough)
+        EXPECT_LT(listener.most_evidence(kStep_s + 1.5, both), kEnoughToCall)
             << hz << " Hz and " << apart << " times that, " << a_cycle;
       }
     }
@@ -188,10 +188,10 @@ TEST(SlowWatch, HearsNothingSlowInATonePastTheThinnedRate) {
         double largest = 0.0, evidence = 0.0;
         const auto tone = [&](double t, int) {
           const double amplitude = std::min(100.0, std::exp(9.0 * (t - 1.0)));
-          return amplitude * std::sin(kFullTurn * (multiple * thinned_hz + off_hz) * t);
+          return amplitude * std::sin(kTurn * (multiple * thinned_hz + off_hz) * t);
         };
         listener.hear(2.0, tone, [&](double t) {
-          if (t > kSettled_s) evidence = std::max(evidence, listener.watch.best_line(any).evidence);
+          if (t > kSettled_s) evidence = std::max(evidence, listener.watch.best_line(any_line).evidence);
           if (t > 1.8) largest = std::max(largest, listener.watch.line_at(12.0).amplitude);
         });
         EXPECT_LT(largest, 100.0 * 1e-3) << rate_hz << " Hz, " << multiple;
@@ -206,7 +206,7 @@ TEST(SlowWatch, ForgetsWhatItHeardAtAGapAndHearsItAgain) {
   EXPECT_LT(find(listener, 12.0, 1.3, 2.0).cycles, 10.0);
   EXPECT_GE(listener.watch.line_at(12.0).amplitude, 10.0);
   listener.watch.clear();
-  EXPECT_EQ(listener.watch.best_line(any).evidence, 0.0);
+  EXPECT_EQ(listener.watch.best_line(any_line).evidence, 0.0);
   // Until its window is full again of what came after the gap a frequency is silent.
   const double gap_s = 2.0 + 30.0 / 12.0;
   listener.hear(
@@ -216,7 +216,7 @@ TEST(SlowWatch, ForgetsWhatItHeardAtAGapAndHearsItAgain) {
   listener.hear(
       gap_s + 2.5, [](double, int) { return 0.0; },
       [&](double t) {
-        if (t > gap_s + 0.5) most = std::max(most, listener.watch.best_line(any).evidence);
+        if (t > gap_s + 0.5) most = std::max(most, listener.watch.best_line(any_line).evidence);
       });
   EXPECT_LT(most, 1.0);
   EXPECT_LT(find(listener, 12.0, 1.3, gap_s + 4.0).cycles, 10.0);
@@ -226,7 +226,7 @@ TEST(SlowWatch, ForgetsEvidenceWhenToldTo) {
   Listener listener{3, 1000.0};
   find(listener, 12.0, 1.3, 2.0);
   listener.watch.forget_evidence();
-  EXPECT_EQ(listener.watch.best_line(any).evidence, 0.0);
+  EXPECT_EQ(listener.watch.best_line(any_line).evidence, 0.0);
 }
 
 TEST(SlowWatch, GivesOnlyLinesThatAreAllowed) {

@@ -24,6 +24,7 @@ struct SyntheticChatter {
   double largest = 1.5;        // times the forced amplitude
   double stop_s = 1e9;         // from here it decays
   double decay_per_s = 60.0;
+  double sideband = 0.0;  // one tooth passing above: over the line's amplitude
 
   // Over the forced amplitude.
   [[nodiscard]] double amplitude(double t) const {
@@ -155,6 +156,10 @@ inline SyntheticLog record(const SyntheticCut& cut) {
         x += engaged * (turn[h].real() * parts[a][h].real() - turn[h].imag() * parts[a][h].imag());
       }
       x += grown * chatter_share[a] * std::sin(chatter_angle + chatter_phase[a]);
+      if (cut.chatter.sideband > 0.0) {
+        const double sideband_angle = chatter_angle + cut.teeth * angle;
+        x += grown * cut.chatter.sideband * chatter_share[a] * std::sin(sideband_angle);
+      }
       x += slow * cut.slow.axes[a] * std::sin(slow_angle + a);
       if (a == cut.axes - 1) x += cut.gravity;
       block.acceleration[a][block.samples] = static_cast<float>(x);
