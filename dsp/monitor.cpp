@@ -19,6 +19,7 @@ constexpr double kFilterRevolutions = 4.0;
 constexpr double kOnOrder_hz = 3.0;         // nearer to an order a line cannot be told from it
 constexpr int kHopsToBelong = 16;           // half a release time
 constexpr double kFaded = 0.1;              // of the largest amplitude of the episode
+constexpr int kFrequencyHops = 8;           // of the running mean of its frequency
 constexpr double kReleaseSmoothing = 0.25;  // a hop
 constexpr double kFilterSlowdown = 8.0;     // in chatter, so that it is not learned as synchronous
 
@@ -139,18 +140,21 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
   const SensorPath& path = sensors_[chatter_sensor_].path;
   const LineWatch& watch = path.watch();
   const double bin_hz = path.bin_hz();
-  double ratio = watch.ratio_at(view_.chatter_frequency_hz);
+  double ratio = watch.ratio_at(heard_hz_);
   // The line wanders, but it does not leap: a peak further off is another one, unless this one was out of sight.
   unseen_s_ += step_s;
   const double reach_hz = unseen_s_ > kOutOfSight_s ? 1.5 * bin_hz : kLargestStep_hz;
   for (const LineCandidate& candidate : watch.candidates()) {
-    if (candidate.ratio < 1.0 || std::abs(candidate.frequency_hz - view_.chatter_frequency_hz) > 1.5 * bin_hz) continue;
+    if (candidate.ratio < 1.0 || std::abs(candidate.frequency_hz - heard_hz_) > 1.5 * bin_hz) continue;
     const Tone tone = analyse_tone(watch.window(candidate.axis), path.sample_rate_hz(), candidate.frequency_hz);
     if (std::abs(tone.frequency_hz - candidate.frequency_hz) > 1.5 * bin_hz) continue;
-    if (std::abs(tone.frequency_hz - view_.chatter_frequency_hz) > reach_hz) continue;
+    if (std::abs(tone.frequency_hz - heard_hz_) > reach_hz) continue;
     unseen_s_ = 0.0;
     ratio = std::max(ratio, candidate.ratio);
-    view_.chatter_frequency_hz = tone.frequency_hz;
+    heard_hz_ = tone.frequency_hz;
+    ++hops_heard_;
+    const double gain = 1.0 / std::min(hops_heard_, kFrequencyHops);
+    view_.chatter_frequency_hz += gain * (heard_hz_ - view_.chatter_frequency_hz);
     view_.chatter_amplitude = tone.amplitude;
     const double away_hz = away_from_order(tone.frequency_hz);
     free_hops_ = away_hz > std::max(5.0, 0.001 * tone.frequency_hz) ? free_hops_ + 1 : 0;
@@ -169,7 +173,7 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
     for (Sensor& each : sensors_) each.path.filter().restart();
   }
   faded_ = faded;
-  if (view_.kind == ChatterKind::unknown && free_hops_ >= 2) {
+  if (view_.kind == ChatterKind::unknown && view_.single_line && free_hops_ >= 2) {
     const ChatterKind kind = name_kind(view_.chatter_frequency_hz);
     if (kind != ChatterKind::unknown) {
       view_.kind = kind;

@@ -38,6 +38,7 @@ struct MonitorView {
   double speed = 0.0;      // measured, rad/s
   bool chatter = false;    // of the tool
   ChatterKind kind = ChatterKind::unknown;
+  bool single_line = true;               // false: chatter in which the tool is thrown about, with no line to answer
   double chatter_frequency_hz = 0.0;     // NaN without chatter
   double chatter_amplitude = 0.0;        // m/s^2
   bool structural = false;               // chatter of the robot's structure, by itself or beside the tool's
@@ -138,6 +139,8 @@ class Monitor {
   double structural_below_s_ = 0.0;
   // The episode of chatter that is open.
   std::size_t chatter_sensor_ = 0;
+  double heard_hz_ = 0.0;  // of its line in the newest hop; the view gives a running mean
+  int hops_heard_ = 0;
   double smooth_ratio_ = 0.0, below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
   double largest_amplitude_ = 0.0;
   bool faded_ = false;

@@ -10,7 +10,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kLeastSteadiness = 0.15;  // of a line that has been there for more than the last quarter window
+constexpr double kLeastSteadiness = 0.08;  // of a line that has been there for more than the last quarter window
 constexpr double kBasePeak = 1.5, kNearAMode = 0.2, kSameLine_hz = 8.0, kMovesMore = 1.5;  // of base_line
 constexpr double kAccelerationCounts = 0.03;
 constexpr double kLeastBefore = 0.25;               // amplitude one revolution before over that now

@@ -24,7 +24,7 @@ constexpr double kSteadyCycles = 0.12;          // by which its turn in a revolu
 constexpr double kFallToDoubt = 4.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0;
 constexpr double kLeastOfForced = 0.01;  // displacement over that of the forced vibration
 // A tool that is thrown about leaves no single line: all bins stand far over their floors, for a tenth of a second.
-constexpr double kWild = 20.0;
+constexpr double kWild = 40.0;
 constexpr int kWildHops = 32;
 
 }  // namespace
@@ -143,7 +143,8 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   }
   view_.chatter = true;
   view_.kind = line == Line::free ? name_kind(tone.frequency_hz) : ChatterKind::unknown;
-  view_.chatter_frequency_hz = tone.frequency_hz;
+  view_.chatter_frequency_hz = heard_hz_ = tone.frequency_hz;
+  hops_heard_ = 1;
   view_.chatter_amplitude = tone.amplitude;
   view_.indicator = std::sqrt(candidate.ratio);
   chatter_sensor_ = index;
@@ -151,6 +152,7 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   below_s_ = doubt_s_ = unseen_s_ = 0.0;
   free_hops_ = order_hops_ = 0;
   was_free_ = line == Line::free;
+  view_.single_line = line != Line::wild;
   largest_amplitude_ = tone.amplitude;
   faded_ = false;
   // Back along the measured growth to where the line left its floor (S = 1).

@@ -61,6 +61,7 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
 
 void Compensator::consider(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const MonitorView& heard = *in.monitor;
+  if (!heard.single_line) return;  // no frequency to put the teeth in step with
   if (heard.kind == ChatterKind::unknown && in.now_ns - chatter_since_ns_ < kUnknownKindWaits_ns) return;
   const bool fading = !(heard.indicator >= 1.0);
   if (said_none_ || fading || (correcting_ && in.now_ns < act_until_ns_)) return;

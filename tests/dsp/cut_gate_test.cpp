@@ -16,9 +16,10 @@ struct Gate {
   CutGate gate{CutGateSettings{}};
   std::vector<CutGate::Change> changes{};
 
-  void hold(double level, double seconds, double speed = kSpeed) {
+  void hold(double level, double seconds, double speed = kSpeed) { hold(level, seconds, speed, level); }
+  void hold(double level, double seconds, double speed, double whole) {
     for (double t = 0.0; t < seconds; t += kStep_s) {
-      const auto change = gate.step(level, level, speed, kStep_s);
+      const auto change = gate.step(level, whole, speed, kStep_s);
       if (change != CutGate::Change::none) changes.push_back(change);
     }
   }
@@ -90,6 +91,39 @@ TEST(CutGate, HasHysteresis) {
   g.hold(3.0, 0.5);
   g.hold(1.5, 0.5);  // above the exit ratio
   EXPECT_EQ(g.changes, Changes{kEntered});
+}
+
+// What repeats with the spindle is forgotten only after some revolutions.
+TEST(CutGate, LeavesTheCutByTheWholeLevelWhileThatOfTheSpindleLags) {
+  Gate g;
+  g.hold(1.0, 0.5);
+  g.hold(5.0, 0.5);
+  g.hold(5.0, 0.03, kSpeed, 1.0);
+  EXPECT_EQ(g.changes, (Changes{kEntered, kLeft}));
+}
+
+TEST(CutGate, DoesNotLeaveTheCutByAWholeLevelThatNeverToldOfIt) {
+  Gate g;
+  g.hold(1.0, 0.5, kSpeed, 10.0);
+  g.hold(5.0, 0.5, kSpeed, 11.0);
+  EXPECT_EQ(g.changes, Changes{kEntered});
+  g.hold(1.0, 0.03, kSpeed, 10.0);
+  EXPECT_EQ(g.changes, (Changes{kEntered, kLeft}));
+}
+
+TEST(CutGate, EntersNoCutWithinSixRevolutionsOfAnExit) {
+  for (const double rpm : {1200.0, 6000.0, 18000.0}) {
+    const double speed = rpm * std::numbers::pi / 30.0, six_s = 360.0 / rpm;
+    Gate g;
+    g.hold(1.0, 1.0, speed);
+    g.hold(5.0, 1.0, speed);
+    g.hold(1.0, 0.017, speed);
+    ASSERT_EQ(g.changes, (Changes{kEntered, kLeft})) << rpm;
+    g.hold(5.0, six_s - 2.0 * kStep_s, speed);
+    EXPECT_EQ(g.changes, (Changes{kEntered, kLeft})) << rpm;
+    g.hold(5.0, 0.03, speed);
+    EXPECT_EQ(g.changes, (Changes{kEntered, kLeft, kEntered})) << rpm;
+  }
 }
 
 TEST(CutGate, BelievesChatter) {

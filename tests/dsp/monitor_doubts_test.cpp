@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/dsp/synthetic_cut.hpp"
 
@@ -85,6 +88,145 @@ TEST(MonitorDoubts, SaturationIsAFault) {
                               })),
                "saturated", 0.01);
 }
+
+// How long after what was bad first came (at bad_s) a fault was told, and the state says so: seconds, by the arrival
+// of the frame that brought it about.
+struct Delay {
+  double fault_s = 1e9, state_s = 1e9;
+};
+
+Delay delay_after(const SyntheticLog& log, const SyntheticCut& cut, double bad_s) {
+  Monitor monitor{monitor_settings(cut)};
+  monitor.set_origin(kSyntheticOrigin_ns);
+  Delay delay;
+  std::size_t next = 0;
+  for (const SampleBlock& block : log.blocks) {
+    for (; next < log.speeds.size() && log.speeds[next].stamp_ns <= block.stamp_ns; ++next) {
+      monitor.add_speed(log.speeds[next]);
+    }
+    monitor.advance(block.stamp_ns);
+    monitor.add_samples(block);
+    const double since_s = static_cast<double>(block.stamp_ns - kSyntheticOrigin_ns) * 1e-9 - bad_s;
+    if (since_s >= 0.0) {
+      if (!only({monitor.events().begin(), monitor.events().end()}, EventType::fault).empty()) {
+        delay.fault_s = std::min(delay.fault_s, since_s);
+      }
+      if (monitor.view().state == State::cannot_tell) delay.state_s = std::min(delay.state_s, since_s);
+    }
+    monitor.clear_events();
+  }
+  return delay;
+}
+
+constexpr double kDeadline_s = 0.01;
+
+class MonitorDeadline : public testing::TestWithParam<double> {
+ protected:
+  MonitorDeadline() {
+    cut_.rate_hz = GetParam();
+    cut_.axes = 1;
+    cut_.duration_s = bad_s_ + 0.1;
+  }
+
+  void expect_in_time(double bad_s) {
+    const Delay delay = delay_after(record(cut_), cut_, bad_s);
+    EXPECT_LE(delay.fault_s, kDeadline_s);
+    EXPECT_LE(delay.state_s, kDeadline_s);
+  }
+
+  // Spoils samples from `first` on, where the deadline starts.
+  void expect_in_time_from(long first, const std::function<void(SampleBlock&, int)>& spoil) {
+    cut_.spoil = [&, first](SampleBlock& block, double t) {
+      const long last = std::lround(t * cut_.rate_hz);
+      for (int i = 0; i < block.samples; ++i) {
+        if (last - (block.samples - 1 - i) >= first) spoil(block, i);
+      }
+    };
+    expect_in_time(static_cast<double>(first) / cut_.rate_hz);
+  }
+
+  // Anywhere in a frame and in a hop.
+  [[nodiscard]] std::vector<long> firsts() const {
+    const auto n = static_cast<long>(bad_s_ * cut_.rate_hz);
+    return {n, n + 7, n + 33, n + 50};
+  }
+
+  SyntheticCut cut_;
+  double bad_s_ = 0.9;
+};
+
+TEST_P(MonitorDeadline, SaturationIsToldWithinTenMilliseconds) {
+  for (const long first : firsts()) {
+    expect_in_time_from(first, [](SampleBlock& block, int i) {
+      block.acceleration[0][i] = 50.0F;
+      block.full_scale[0] |= std::uint64_t{1} << i;
+    });
+  }
+}
+
+TEST_P(MonitorDeadline, AStuckSensorIsToldWithinTenMilliseconds) {
+  for (const long first : firsts()) {
+    expect_in_time_from(first, [](SampleBlock& block, int i) { block.acceleration[0][i] = 1.25F; });
+  }
+}
+
+TEST_P(MonitorDeadline, EightEqualSamplesAreToldWithinTenMilliseconds) {
+  for (const long first : firsts()) {
+    int left = 8;
+    expect_in_time_from(first, [&](SampleBlock& block, int i) {
+      if (left-- > 0) block.acceleration[0][i] = 1.25F;
+    });
+  }
+}
+
+// Also where a frame holds as many samples as it can, two hops at 10 kHz.
+TEST_P(MonitorDeadline, ASingleNanIsToldWithinTenMilliseconds) {
+  for (const int samples_per_frame : {10, kMaxSamplesPerBlock}) {
+    cut_.samples_per_frame = samples_per_frame;
+    for (const long first : firsts()) {
+      int left = 1;
+      expect_in_time_from(first, [&](SampleBlock& block, int i) {
+        if (left-- > 0) block.acceleration[0][i] = std::numeric_limits<float>::quiet_NaN();
+      });
+    }
+  }
+}
+
+// Without a counter frames that come up to 50 ms late may have waited for the bus, so only a longer gap shows.
+TEST_P(MonitorDeadline, AGapIsToldWithinTenMillisecondsOfTheFrameThatFollows) {
+  for (const auto& [has_counter, gap_s] : {std::pair{true, 0.02}, {true, 0.06}, {false, 0.06}}) {
+    for (const double from_s : {bad_s_, bad_s_ + 0.0013}) {
+      SCOPED_TRACE(gap_s);
+      cut_.has_counter = has_counter;
+      const double to_s = from_s + gap_s;
+      cut_.frame_is_sent = [=](double t) { return t < from_s || t > to_s; };
+      expect_in_time(to_s);
+    }
+  }
+}
+
+TEST_P(MonitorDeadline, AnImplausibleSpeedIsToldWithinTenMilliseconds) {
+  for (const double told : {-600.0, 0.0, 1e6, std::nan("")}) {
+    for (const double from_s : {bad_s_, bad_s_ + 0.0011}) {
+      SCOPED_TRACE(told);
+      SyntheticLog log = record(cut_);
+      double bad_s = 1e9;
+      for (SpindleReading& reading : log.speeds) {
+        const double t = static_cast<double>(reading.stamp_ns - kSyntheticOrigin_ns) * 1e-9;
+        if (t < bad_s_) continue;
+        reading.stamp_ns += std::llround((from_s - bad_s_) * 1e9);
+        reading.speed = told;
+        bad_s = std::min(bad_s, t + from_s - bad_s_);
+      }
+      const Delay delay = delay_after(log, cut_, bad_s);
+      EXPECT_LE(delay.fault_s, kDeadline_s);
+      EXPECT_LE(delay.state_s, kDeadline_s);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, MonitorDeadline, testing::Values(10000.0, 25600.0, 50000.0),
+                         [](const auto& info) { return std::to_string(static_cast<int>(info.param)) + "Hz"; });
 
 TEST(MonitorDoubts, LostFramesAreToldAndBridged) {
   for (const bool has_counter : {true, false}) {

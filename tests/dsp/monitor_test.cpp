@@ -127,6 +127,37 @@ TEST(Monitor, NamesNoKindFarFromEveryMode) {
   }
 }
 
+// Chatter shows at its own frequency and a tooth passing above it, where less motion may be the louder acceleration.
+TEST(Monitor, ReportsTheLineNearAnExpectedModeWhereASidebandIsLouder) {
+  unsigned seed = 0;
+  for (const double rate_hz : {10000.0, 50000.0}) {
+    for (const double hz : {427.0, 523.0}) {
+      for (const double sideband : {1.2, 1.5}) {
+        SyntheticCut cut;
+        cut.rate_hz = rate_hz;
+        cut.axes = 1;
+        cut.seed = ++seed;
+        cut.teeth = 3;
+        cut.duration_s = 1.4;
+        cut.speed_rpm = [](double) { return 7200.0; };
+        cut.chatter = {hz, 1.0, 40.0, 1.0};
+        cut.chatter.sideband = sideband;
+        const SyntheticLog log = record(cut);
+        const auto first_onset_hz = [&](double mode_hz) {
+          Monitor monitor{monitor_settings(cut)};
+          const ExpectedMode mode{mode_hz, 0.03};
+          monitor.expect({&mode, 1}, std::nan(""));
+          const auto onsets = only(play(log, monitor, [](const MonitorView&) {}), EventType::chatter_onset);
+          return onsets.empty() ? 0.0 : onsets[0].frequency_hz;
+        };
+        EXPECT_NEAR(first_onset_hz(0.95 * hz), hz, 5.0) << rate_hz << " Hz, sideband " << sideband;
+        EXPECT_NEAR(first_onset_hz(3000.0), hz + 360.0, 5.0);  // where nothing tells that it is a sideband
+        EXPECT_NEAR(first_onset_hz(1.05 * hz), hz, 5.0) << rate_hz << " Hz, sideband " << sideband;
+      }
+    }
+  }
+}
+
 TEST(Monitor, FindsChatterWithLateAndMissingSpeedMessages) {
   SyntheticCut cut;
   cut.chatter = {733.0, 1.2, 30.0};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -128,6 +129,114 @@ TEST(SynchronousFilter, DoesNotRepeatAKnock) {
     if (since >= 1.0) echo += residual[0] * residual[0];
   }
   EXPECT_LT(std::sqrt(echo), 4.0 * std::sqrt(quiet));  // learned in full it would be about 10
+}
+
+struct Order {
+  int order;
+  double amplitude;
+};
+
+// A filter that has learned orders, the same on every axis but for a quarter of each, and a mean.
+SynchronousFilter learned(int axes, double samples, const std::vector<Order>& orders, double mean) {
+  SynchronousFilter filter{axes};
+  filter.set_samples_per_revolution(samples);
+  for (int n = 0; n < 100 * samples; ++n) {
+    const double turned = n / samples;
+    std::array<float, kMaxAxes> x{}, residual{};
+    for (int a = 0; a < axes; ++a) {
+      double sum = mean;
+      for (const auto& [order, amplitude] : orders)
+        sum += amplitude * std::cos(kRevolution * (order * turned + 0.25 * a));
+      x[a] = static_cast<float>(sum);
+    }
+    filter.process(turned - std::floor(turned), {x.data(), static_cast<std::size_t>(axes)}, residual);
+  }
+  return filter;
+}
+
+TEST(SynchronousFilter, TellsHowFarAKnownSumOfOrdersMovesTheSensor) {
+  const std::vector<std::vector<Order>> sums = {
+      {{1, 3.0}}, {{2, 10.0}}, {{1, 1.0}, {2, 10.0}, {3, 4.0}, {4, 8.0}}, {{4, 10.0}}};
+  for (const double samples : {100.0, 256.0, 500.3}) {
+    for (const double speed : {200.0, 628.0}) {
+      for (const int axes : {1, 2, 3}) {
+        for (const auto& orders : sums) {
+          double square = 0.0;
+          for (const auto& [order, amplitude] : orders) {
+            const double moved = amplitude / (order * speed * order * speed);
+            square += axes * 0.5 * moved * moved;
+          }
+          const double told = learned(axes, samples, orders, 9.81).displacement(speed);
+          EXPECT_NEAR(told / std::sqrt(square), 1.0, 0.02) << samples << ' ' << orders.size() << ' ' << orders[0].order;
+        }
+      }
+    }
+  }
+}
+
+TEST(SynchronousFilter, TellsTheLevelOfAKnownWaveWithoutItsMean) {
+  for (const double samples : {100.0, 256.0, 500.3}) {
+    for (const int axes : {1, 3}) {
+      EXPECT_NEAR(learned(axes, samples, {{2, 10.0}, {5, 3.0}}, 9.81).level(), std::sqrt(axes * 0.5 * 109.0),
+                  0.02 * std::sqrt(axes * 54.5))
+          << samples;
+    }
+  }
+}
+
+TEST(SynchronousFilter, TellsNothingBeforeItHasLearned) {
+  SynchronousFilter filter{3};
+  EXPECT_EQ(filter.level(), 0.0);
+  EXPECT_EQ(filter.displacement(600.0), 0.0);
+  filter.set_samples_per_revolution(256.0);
+  EXPECT_EQ(filter.level(), 0.0);
+  EXPECT_EQ(filter.displacement(600.0), 0.0);
+  EXPECT_EQ(learned(1, 256.0, {{2, 10.0}}, 0.0).displacement(0.0), 0.0);
+}
+
+TEST(SynchronousFilter, KeepsTheMeanAndForgetsTheOrders) {
+  SynchronousFilter filter = learned(2, 256.0, {{2, 10.0}, {5, 3.0}}, 9.81);
+  EXPECT_NEAR(filter.mean(0), 9.81, 0.05);
+  EXPECT_NEAR(filter.mean(1), 9.81, 0.05);
+  filter.forget();
+  EXPECT_NEAR(filter.level(), 0.0, 1e-4);
+  EXPECT_NEAR(filter.displacement(628.0), 0.0, 1e-9);
+  EXPECT_EQ(filter.learned_revolutions(), 0.0);
+  for (int n = 0; n < 256; ++n) {
+    std::array<float, 2> residual{};
+    filter.process(n / 256.0, std::array{9.81F, 9.81F}, residual);
+    EXPECT_NEAR(residual[0], 0.0, 0.05);
+  }
+}
+
+// What the watch for slow lines hears.
+TEST(SynchronousFilter, PassesALineBelowTheSpindleInResidualAndMeanWithoutTheOrders) {
+  for (const double rate_hz : {10000.0, 25600.0}) {
+    for (const double memory : {4.0, 16.0}) {
+      for (const double line_hz : {5.0, 10.0, 20.0}) {
+        const double samples = rate_hz / 100.0;  // 6000 rpm
+        SynchronousFilter filter{1};
+        filter.set_samples_per_revolution(samples);
+        filter.set_memory(memory);
+        double in_phase = 0.0, across = 0.0, rest = 0.0;
+        const int settle = static_cast<int>(rate_hz), measure = static_cast<int>(rate_hz / 5.0);
+        for (int n = 0; n < settle + measure; ++n) {
+          const double turned = n / samples, angle = kRevolution * line_hz * n / rate_hz;
+          const std::array<float, 1> x = {static_cast<float>(forced(turned) + std::sin(angle))};
+          std::array<float, 1> residual{};
+          filter.process(turned - std::floor(turned), x, residual);
+          const double y = residual[0] + filter.mean(0) - 1.0;  // of forced()
+          if (n < settle) continue;
+          in_phase += 2.0 / measure * y * std::sin(angle);
+          across += 2.0 / measure * y * std::cos(angle);
+          rest += (y - std::sin(angle)) * (y - std::sin(angle)) / measure;
+        }
+        EXPECT_NEAR(std::hypot(in_phase, across), 1.0, memory < 10.0 ? 0.07 : 0.02)
+            << rate_hz << ' ' << memory << ' ' << line_hz;
+        EXPECT_LT(std::sqrt(rest), 0.2) << rate_hz << ' ' << memory << ' ' << line_hz;  // of 7.5
+      }
+    }
+  }
 }
 
 }  // namespace

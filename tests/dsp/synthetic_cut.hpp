@@ -24,6 +24,7 @@ struct SyntheticChatter {
   double largest = 1.5;        // times the forced amplitude
   double stop_s = 1e9;         // from here it decays
   double decay_per_s = 60.0;
+  double sideband = 0.0;  // one tooth passing above: over the line's amplitude
 
   // Over the forced amplitude.
   [[nodiscard]] double amplitude(double t) const {
@@ -33,6 +34,28 @@ struct SyntheticChatter {
     return grown * std::exp(-decay_per_s * (t - at));
   }
   [[nodiscard]] double reaches_s(double ratio) const { return start_s + std::log(ratio / 0.01) / growth_per_s; }
+};
+
+// A line of the robot's structure, a few hertz: it grows from cycle to cycle, stands, and dies.
+struct SyntheticSlowLine {
+  double frequency_hz = 0.0;
+  double start_s = 0.0;  // when it stands at 1 % of its largest
+  double cycle_growth = 1.3;
+  double largest = 3.0;  // m/s^2
+  double stop_s = 1e9;   // from here it decays
+  double cycle_decay = 0.7;
+  std::array<double, kMaxAxes> axes{1.0, 0.6, 0.3};
+
+  // m/s^2
+  [[nodiscard]] double amplitude(double t) const {
+    if (frequency_hz <= 0.0 || t < start_s) return 0.0;
+    const double at = std::min(t, stop_s);
+    const double grown = std::min(1.0, 0.01 * std::pow(cycle_growth, frequency_hz * (at - start_s)));
+    return largest * grown * std::pow(cycle_decay, frequency_hz * (t - at));
+  }
+  [[nodiscard]] double reaches_s(double acceleration) const {
+    return start_s + std::log(acceleration / (0.01 * largest)) / (std::log(cycle_growth) * frequency_hz);
+  }
 };
 
 struct SyntheticCut {
@@ -49,6 +72,8 @@ struct SyntheticCut {
   std::function<double(double)> speed_rpm = [](double) { return 6000.0; };
   std::function<double(double)> depth = [](double t) { return t < 0.5 ? 0.0 : 1.0; };  // 0: air, 1: nominal
   SyntheticChatter chatter;
+  SyntheticSlowLine slow;
+  double gravity = 0.0;          // on the last axis, m/s^2
   std::vector<double> knocks_s;  // each rings a mode of 430 Hz and one of 1320 Hz, 3 % damped, to `knock` m/s^2
   double knock = 20.0;
   double speed_period_s = 0.02, speed_jitter_s = 0.0;
@@ -111,6 +136,7 @@ inline SyntheticLog record(const SyntheticCut& cut) {
     chatter_angle += 2.0 * std::numbers::pi * cut.chatter.frequency_hz / cut.rate_hz;
     const double engaged = cut.air + (1.0 - cut.air) * cut.depth(t);
     const double grown = cut.forced * cut.chatter.amplitude(t);
+    const double slow = cut.slow.amplitude(t), slow_angle = 2.0 * std::numbers::pi * cut.slow.frequency_hz * t;
     std::array<std::complex<double>, kOrders + 1> turn;
     turn[0] = 1.0;
     const std::complex<double> once = std::polar(1.0, angle);
@@ -130,6 +156,12 @@ inline SyntheticLog record(const SyntheticCut& cut) {
         x += engaged * (turn[h].real() * parts[a][h].real() - turn[h].imag() * parts[a][h].imag());
       }
       x += grown * chatter_share[a] * std::sin(chatter_angle + chatter_phase[a]);
+      if (cut.chatter.sideband > 0.0) {
+        const double sideband_angle = chatter_angle + cut.teeth * angle;
+        x += grown * cut.chatter.sideband * chatter_share[a] * std::sin(sideband_angle);
+      }
+      x += slow * cut.slow.axes[a] * std::sin(slow_angle + a);
+      if (a == cut.axes - 1) x += cut.gravity;
       block.acceleration[a][block.samples] = static_cast<float>(x);
     }
     if (++block.samples == cut.samples_per_frame) {

@@ -10,6 +10,8 @@ constexpr double kLate_s = 0.5;  // after the truth's moment, an alarm is no det
 constexpr double kShort_s = 0.025, kLong_s = 0.25;
 constexpr double kStandsFor = 0.5;  // of the forced amplitude: chatter in a cut that was planned as stable
 constexpr double kCyclesToFind = 3.0;
+constexpr double kFrequencyBy_s = 0.4;  // after the clock of structural chatter
+constexpr double kSlowSpan_s = 0.3;     // over which its true frequency is measured
 
 // Standard deviation of the frequency of a real tone in white noise, measured over `length` s.
 double cramer_rao_hz(double amplitude, double noise, double rate_hz, double length) {
@@ -35,7 +37,10 @@ void judge_structural(const CutPlan& plan, const CutTruth& truth, const std::vec
     if (alarm.time < plan.unstable_from || !alarm.called_structural || outcome.structural_named) continue;
     outcome.structural_named = true;
     outcome.structural_s = alarm.time;
-    outcome.structural_hz = alarm.frequency_hz;
+    const double at = std::max(alarm.time, truth.slow_s + kFrequencyBy_s);
+    const auto step = static_cast<std::size_t>((at - alarm.time) / kTrack_s);
+    outcome.structural_error_hz = alarm.track_hz[std::min(step, alarm.track_hz.size() - 1)] -
+                                  line_frequency(truth.motion, slow_line(plan), at - 0.5 * kSlowSpan_s, kSlowSpan_s);
     outcome.structural_found = alarm.time <= truth.slow_s + kCyclesToFind / plan.slow_hz;
   }
 }

@@ -13,7 +13,7 @@ struct DetectorOutcome {
   int called_regenerative = 0;  // of the false ones
   bool structural_found = false;  // a structural alarm within three cycles of the clock's start
   bool structural_named = false;  // at any time after
-  double structural_s = kNaN, structural_hz = kNaN;
+  double structural_s = kNaN, structural_error_hz = kNaN;  // 0.4 s after the clock's start, or at the alarm
   double error_25ms_hz = kNaN, error_250ms_hz = kNaN;
 };
 
