@@ -99,6 +99,12 @@ bool SlowWatch::push(std::span<const Lanes> x) noexcept {
   return stepped;
 }
 
+bool SlowWatch::push(std::span<const float> x) noexcept {
+  Lanes sample;
+  for (int a = 0; a < axes_; ++a) sample.set(a, x[a]);
+  return push({&sample, 1});
+}
+
 bool SlowWatch::keep_thinned() noexcept {
   in_sample_ = 0;
   for (int a = 0; a < axes_; ++a) history_[a][at_] = history_[a][at_ + kHistory] = sums_[0][a];

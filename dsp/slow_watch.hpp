@@ -33,6 +33,8 @@ class SlowWatch {
   // Samples, a lane an axis, what repeats with the spindle taken out, gravity left in. True when they complete a step:
   // then the lines are new.
   bool push(std::span<const Lanes> x) noexcept;
+  // One sample of every axis.
+  bool push(std::span<const float> x) noexcept;
   [[nodiscard]] double step_s() const noexcept { return kStep * thinned_ / sample_rate_hz_; }
 
   // The line for which there is most evidence after the newest step, of all that `allowed(frequency in Hz)` lets pass.
