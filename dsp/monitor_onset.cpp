@@ -21,10 +21,10 @@ constexpr double kHoldsPeak = 0.9;              // and over the largest since it
 constexpr double kSteadyCycles = 0.12;          // by which its turn in a revolution may change
 // After such a change of the whole vibration's power twice as much is asked for: after a fall the tool has left the cut
 // for a moment, a rise out of the cut may be an entry, which the synchronous level tells of a few revolutions later.
-constexpr double kFallToDoubt = 4.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0;
+constexpr double kFallToDoubt = 3.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0;
 constexpr double kLeastOfForced = 0.01;  // displacement over that of the forced vibration
 // A tool that is thrown about leaves no single line: all bins stand far over their floors, for a tenth of a second.
-constexpr double kWild = 40.0;
+constexpr double kWild = 25.0;
 constexpr int kWildHops = 32;
 
 }  // namespace
