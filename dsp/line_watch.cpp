@@ -41,6 +41,7 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       settings_{settings},
       fft_{length_},
       window_(length_),
+      windowed_(length_),
       spectrum_(bins_),
       inverse_limit_(bins_),
       ratio_(bins_, 0.0F),
@@ -100,15 +101,15 @@ void LineWatch::make_room() noexcept {
 }
 
 void LineWatch::transform() noexcept {
-  const float *const x = window(0).data(), *const y = window(axes_ > 1 ? 1 : 0).data(),
-                     *const z = window(axes_ > 2 ? 2 : 0).data();
-  const std::span<ComplexLanes> pairs = fft_.pairs();
-  const auto windowed = [&](std::size_t n) { return window_[n] * Lanes{x[n], y[n], z[n], 0.0F}; };
-  for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = {windowed(2 * n), windowed(2 * n + 1)};
-  fft_.power(first_, last_, spectrum_);
   for (int a = 0; a < axes_; ++a) {
+    const float* const newest = window(a).data();
+    for (int n = 0; n < length_; ++n) windowed_[n] = newest[n] * window_[n];
+    fft_.transform(windowed_, spectrum_);
     float* const power = power_[a].data();
-    for (int b = first_; b <= last_; ++b) power[b] = power_scale_ * spectrum_[b][a];
+    for (int b = first_; b <= last_; ++b) {
+      const float re = spectrum_[b].real(), im = spectrum_[b].imag();
+      power[b] = power_scale_ * (re * re + im * im);
+    }
   }
 }
 

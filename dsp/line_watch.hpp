@@ -9,11 +9,12 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
+#include "dsp/fft.hpp"
 #include "dsp/lanes.hpp"
-#include "dsp/lanes_fft.hpp"
 
 namespace stillcut {
 
@@ -106,9 +107,9 @@ class LineWatch {
   int axes_, length_, kept_, hop_, bins_, first_, last_;  // lines are sought between bins first_ and last_
   double bin_hz_;
   LineWatchSettings settings_;
-  LanesFft fft_;
-  std::vector<float> window_;
-  std::vector<Lanes> spectrum_;                                 // power
+  RealFft fft_;
+  std::vector<float> window_, windowed_;
+  std::vector<std::complex<float>> spectrum_;
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;

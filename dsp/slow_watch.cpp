@@ -13,8 +13,8 @@ constexpr double kCycles = 2.0;                             // of the window
 constexpr double kNoiseMemory_s = 2.0;
 // Power over that of noise in a band of that width: the fewer axes, the more does noise alone vary.
 constexpr std::array<double, kMaxAxes> kNoiseLimit{24.0, 16.0, 12.0};
-constexpr double kSlowLimit = 2.5;  // power over the band's own floor
-constexpr double kSlowFloorMemory_s = 3.0, kSlowFloorClip = 4.0, kSlowFloorLearns_s = 0.4;
+constexpr double kSlowLimit = 3.0;  // power over the band's own floor
+constexpr double kSlowFloorMemory_s = 1.0, kSlowFloorClip = 4.0, kSlowFloorLearns_s = 0.4;
 constexpr double kLeastStanding = 0.985, kLeastGrowth = 1.03, kMostGrowth = 2.0;  // a cycle; more: a window that fills
 constexpr double kCyclesToGrow = 0.75, kSecondsToGrow = 0.05;  // beyond the two windows that show it: the longer
 constexpr double kFast_hz = 20.0;
