@@ -15,7 +15,7 @@ constexpr double kStructuralRelease = 0.25;  // of the limit in power
 constexpr double kCyclesToEnd = 3.0;
 constexpr double kOfOrder = 0.3;  // of the line's frequency: nearer to an order, its window hears that as well
 
-constexpr double kNearStructure = 0.25; // of a mode's frequency
+constexpr double kNearStructure = 0.25;  // of a mode's frequency
 constexpr double kFallToDoubtStructure = 8.0, kDoubtfulAsks = 2.0, kNoMapAsks = 2.0, kUnexpectedAsks = 3.0;
 }  // namespace
 
