@@ -36,8 +36,9 @@ CutGate::Change CutGate::step(double level, double whole_level, double speed, do
   if (air_ > 0.0) {
     const double memory_s = level < air_ ? settings_.air_fall_s : settings_.air_rise_s;
     if (!was_cutting || level < air_) {
-      air_ += std::min(1.0, step_s / memory_s) * (level - air_);
-      air_whole_ += std::min(1.0, step_s / memory_s) * (whole_level - air_whole_);
+      const double share = std::min(1.0, step_s / memory_s);
+      air_ += share * (level - air_);
+      air_whole_ += share * (whole_level - air_whole_);
     }
   } else if (revolutions_ > kRevolutionsToLearn) {
     air_ = level;

@@ -71,9 +71,8 @@ void Monitor::add_samples(const SampleBlock& block) noexcept {
     report_lost_frames(sensor, placed.samples_lost, placed.stamp_ns);
   }
   const double rate = sensor.path.sample_rate_hz();
-  const double memory = kFilterRevolutions;
   const bool loud = view_.chatter && view_.indicator > 1.0 && !faded_;
-  sensor.path.filter().set_memory(loud ? kFilterSlowdown * memory : memory);
+  sensor.path.filter().set_memory(loud ? kFilterSlowdown * kFilterRevolutions : kFilterRevolutions);
   for (int i = 0; i < block.samples;) {
     i = sensor.path.process(block, i, view_.speed);
     if (!sensor.path.hop_complete()) break;

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kStructuralRelease = 0.25;  // of the limit in power
 constexpr double kCyclesToEnd = 3.0;
-constexpr double kOfOrder = 0.3;  // of the line's frequency: nearer to an order, its window hears that as well
-
+constexpr double kOfOrder = 0.3;         // of the line's frequency: nearer to an order, its window hears that as well
 constexpr double kNearStructure = 0.25;  // of a mode's frequency
 constexpr double kFallToDoubtStructure = 8.0, kDoubtfulAsks = 2.0, kNoMapAsks = 2.0, kUnexpectedAsks = 3.0;
+
 }  // namespace
 
 void Monitor::listen_to_structure(std::size_t index, std::int64_t stamp_ns, bool trusted) noexcept {
@@ -29,7 +29,6 @@ void Monitor::listen_to_structure(std::size_t index, std::int64_t stamp_ns, bool
     slow.forget_evidence();
     return;
   }
-  // Nearer to an order of the spindle its window hears that as well.
   const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
   const SlowLine line = slow.best_line([spindle_hz](double hz) {
     const double order_hz = spindle_hz * std::max(1.0, std::round(hz / spindle_hz));

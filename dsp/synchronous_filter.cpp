@@ -13,6 +13,10 @@ constexpr double kUsualMemory = 2.0;  // revolutions
 constexpr float kClip = 3.0F;         // times the usual residual
 constexpr float kSixth = 1.0F / 6.0F;
 
+Lanes lanes_of(const std::array<double, kMaxAxes>& axes) noexcept {
+  return {static_cast<float>(axes[0]), static_cast<float>(axes[1]), static_cast<float>(axes[2]), 0.0F};
+}
+
 }  // namespace
 
 SynchronousFilter::SynchronousFilter(int axes) : axes_{axes}, table_(kMaxKnots) {}
@@ -33,7 +37,7 @@ bool SynchronousFilter::set_samples_per_revolution(double samples_per_revolution
 }
 
 void SynchronousFilter::forget() noexcept {
-  std::fill(table_.begin(), table_.end(), Lanes{mean(0), mean(1), mean(2), 0.0F});
+  std::fill(table_.begin(), table_.end(), lanes_of(mean_));
   usual_ = Lanes{};
   restart();
 }
@@ -88,7 +92,7 @@ void SynchronousFilter::learn(std::span<const double> angles, const Lanes* x, La
   }
   const int mask = knots_ - 1;
   const bool clips = learned_revolutions_ > kRevolutionsUnclipped;
-  const Lanes zero, mean_before{mean(0), mean(1), mean(2), 0.0F};
+  const Lanes zero, mean_before = lanes_of(mean_);
   const float per_knot = 1.0F / static_cast<float>(knots_);
   Lanes usual = usual_, learned;
   for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -116,7 +120,7 @@ void SynchronousFilter::learn(std::span<const double> angles, const Lanes* x, La
 double SynchronousFilter::level() const noexcept {
   if (knots_ == 0) return 0.0;
   const auto last = static_cast<std::size_t>(knots_) - 1;
-  const Lanes mean_now{mean(0), mean(1), mean(2), 0.0F};
+  const Lanes mean_now = lanes_of(mean_);
   Lanes power;
   for (std::size_t k = 0; k <= last; ++k) {
     const Lanes smooth = 0.25F * (table_[(k + last) & last] + 2.0F * table_[k] + table_[(k + 1) & last]) - mean_now;
