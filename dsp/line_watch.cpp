@@ -42,7 +42,6 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       fft_{length_},
       window_(length_),
       windowed_(length_),
-      spectrum_(bins_),
       inverse_limit_(bins_),
       ratio_(bins_, 0.0F),
       over_floor_(bins_, 0.0F),
@@ -54,6 +53,7 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
   }
   power_scale_ = 4.0F / (sum * sum);  // a sine of amplitude A gives A^2
   for (int a = 0; a < axes_; ++a) {
+    spectrum_[a].resize(bins_);
     residual_[a].assign(2 * kept_, 0.0F);
     power_[a].assign(bins_, 0.0F);
     floor_[a].assign(bins_, 0.0F);
@@ -104,10 +104,11 @@ void LineWatch::transform() noexcept {
   for (int a = 0; a < axes_; ++a) {
     const float* const newest = window(a).data();
     for (int n = 0; n < length_; ++n) windowed_[n] = newest[n] * window_[n];
-    fft_.transform(windowed_, spectrum_);
+    fft_.transform(windowed_, spectrum_[a]);
+    const std::complex<float>* const spectrum = spectrum_[a].data();
     float* const power = power_[a].data();
     for (int b = first_; b <= last_; ++b) {
-      const float re = spectrum_[b].real(), im = spectrum_[b].imag();
+      const float re = spectrum[b].real(), im = spectrum[b].imag();
       power[b] = power_scale_ * (re * re + im * im);
     }
   }

@@ -75,6 +75,11 @@ class LineWatch {
     return std::span{residual_[axis]}.subspan(static_cast<std::size_t>(begin_), static_cast<std::size_t>(kept_));
   }
   [[nodiscard]] int window_length() const noexcept { return length_; }
+  // Of the newest window under its Hann weights, a value a bin; those between lowest_hz() and highest_hz() are watched.
+  [[nodiscard]] std::span<const std::complex<float>> spectrum(int axis) const noexcept { return spectrum_[axis]; }
+  [[nodiscard]] double bin_hz() const noexcept { return bin_hz_; }
+  [[nodiscard]] double lowest_hz() const noexcept { return first_ * bin_hz_; }
+  [[nodiscard]] double highest_hz() const noexcept { return last_ * bin_hz_; }
   // How far back a whole window can be taken out of kept().
   [[nodiscard]] double longest_lag_s() const noexcept { return (kept_ - length_ - 2) / (bin_hz_ * length_); }
   [[nodiscard]] int hop_length() const noexcept { return hop_; }
@@ -109,7 +114,7 @@ class LineWatch {
   LineWatchSettings settings_;
   RealFft fft_;
   std::vector<float> window_, windowed_;
-  std::vector<std::complex<float>> spectrum_;
+  std::array<std::vector<std::complex<float>>, 3> spectrum_;
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "dsp/numbers.hpp"
 
@@ -18,6 +19,7 @@ constexpr double kBlindToEnd_s = 0.5;  // chatter out of sight for this long is 
 constexpr double kFilterRevolutions = 4.0;
 constexpr double kOnOrder_hz = 3.0;         // nearer to an order a line cannot be told from it
 constexpr int kHopsToBelong = 16;           // half a release time
+constexpr double kFadedOrder = 0.1;         // of the largest power
 constexpr double kFaded = 0.1;              // of the largest amplitude of the episode
 constexpr int kFrequencyHops = 8;           // of the running mean of its frequency
 constexpr double kReleaseSmoothing = 0.25;  // a hop
@@ -33,7 +35,9 @@ Monitor::Monitor(const MonitorSettings& settings) : settings_{settings}, gate_{s
     if (!(sensor.sample_rate_hz >= 500.0) || (sensor.axes_present & 7U) == 0) {
       throw std::invalid_argument("an accelerometer needs a sample rate of at least 500 Hz and one axis");
     }
-    sensors_.push_back({SampleClock{sensor.sample_rate_hz}, SensorPath{sensor, settings.watch}, 0, 0, 0, false});
+    SensorPath path{sensor, settings.watch};
+    const OrderWatch orders{path.axes()};
+    sensors_.push_back({SampleClock{sensor.sample_rate_hz}, std::move(path), orders});
   }
   view_.indicator = view_.chatter_frequency_hz = view_.structural_frequency_hz = kNaN;
   view_.state = State::cannot_tell;
@@ -113,6 +117,7 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
 
   const bool trusted = view_.doubts == kNoDoubt;
   const bool able = trusted && sensor.path.watch().ready();
+  follow_orders(index, trusted);
   if (view_.chatter && !trusted) {
     doubt_s_ += step_s;
     if (doubt_s_ > kBlindToEnd_s) end_chatter(stamp_ns, "cannot tell any longer");
@@ -140,6 +145,11 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
   const LineWatch& watch = path.watch();
   const double bin_hz = path.bin_hz();
   double ratio = watch.ratio_at(heard_hz_);
+  const double of_order =
+      was_free_ ? 0.0 : sensors_[chatter_sensor_].orders.ratio_at(heard_hz_) / settings_.watch.limit;
+  largest_order_ratio_ = std::max(largest_order_ratio_, of_order);
+  const bool order_faded = of_order < kFadedOrder * largest_order_ratio_;
+  if (!order_faded) ratio = std::max(ratio, of_order);
   // The line wanders, but it does not leap: a peak further off is another one, unless this one was out of sight.
   unseen_s_ += step_s;
   const double reach_hz = unseen_s_ > kOutOfSight_s ? 1.5 * bin_hz : kLargestStep_hz;
@@ -167,7 +177,7 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
   view_.indicator = std::sqrt(ratio);
   // What the synchronous filter has learned of loud chatter it repeats on the orders when that is gone: learn afresh.
   largest_amplitude_ = std::max(largest_amplitude_, view_.chatter_amplitude);
-  const bool faded = view_.chatter_amplitude < kFaded * largest_amplitude_;
+  const bool faded = order_faded || view_.chatter_amplitude < kFaded * largest_amplitude_;
   if (faded && !faded_) {
     for (Sensor& each : sensors_) each.path.filter().restart();
   }

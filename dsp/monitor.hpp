@@ -11,6 +11,7 @@
 
 #include "dsp/cut_gate.hpp"
 #include "dsp/line_watch.hpp"
+#include "dsp/order_watch.hpp"
 #include "dsp/sample_clock.hpp"
 #include "dsp/sensor_path.hpp"
 #include "dsp/signals.hpp"
@@ -24,6 +25,7 @@ struct MonitorSettings {
   double highest_speed = 0.0;           // rad/s; far beyond it a reading is implausible; 0: no limit known
   double nominal_speed = 0.0;           // rad/s, used where the cell has no speed signal
   bool has_speed_signal = true;
+  int teeth = 0;  // of the tool; 0: unknown
   LineWatchSettings watch{};
   CutGateSettings gate{};
   double release_ratio = 0.35;  // of the limit on S, its mean over some hops: below it chatter has ended
@@ -70,6 +72,8 @@ class Monitor {
   struct Sensor {
     SampleClock clock;
     SensorPath path;
+    OrderWatch orders;
+    int hops_to_orders = 0;
     std::int64_t last_arrival_ns = 0;
     std::int64_t last_loss_event_ns = 0;
     std::int64_t losses = 0;
@@ -90,6 +94,8 @@ class Monitor {
                     std::int64_t stamp_ns) const noexcept;
   [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
   bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  void follow_orders(std::size_t sensor, bool trusted) noexcept;
+  bool look_for_growing_order(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void look_for_standing_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
   void listen_to_structure(std::size_t sensor, std::int64_t stamp_ns, bool trusted) noexcept;
@@ -119,6 +125,7 @@ class Monitor {
   void emit(std::int64_t stamp_ns, EventType type, ChatterKind kind, double frequency_hz, const char* note) noexcept;
 
   static constexpr std::size_t kMaxEvents = 64, kMaxModes = 16;
+  static constexpr double kLeastOfForced = 0.01;  // displacement over that of the forced vibration: less is no chatter
 
   MonitorSettings settings_;
   std::vector<Sensor> sensors_;
@@ -142,7 +149,7 @@ class Monitor {
   double heard_hz_ = 0.0;  // of its line in the newest hop; the view gives a running mean
   int hops_heard_ = 0;
   double smooth_ratio_ = 0.0, below_s_ = 0.0, doubt_s_ = 0.0, unseen_s_ = 0.0;
-  double largest_amplitude_ = 0.0;
+  double largest_amplitude_ = 0.0, largest_order_ratio_ = 0.0;
   bool faded_ = false;
   int free_hops_ = 0, order_hops_ = 0;  // in a row, that its line stood off the spindle's orders, or on one
   bool was_free_ = false;

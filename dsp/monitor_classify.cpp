@@ -98,14 +98,17 @@ Monitor::Suspect Monitor::classify(const SensorPath& path, const LineCandidate& 
   return suspect;
 }
 
-// On a spindle order a line may be forced. It counts only if it grows at constant speed while the other orders do not.
+// On a spindle order a line may be forced. It counts only if it grows at constant speed while the other orders do not;
+// where the teeth are known, the orders that they force: chatter off these has sidebands on the rest.
 bool Monitor::stands_out_of_the_orders(const SensorPath& path, const LineCandidate& candidate,
                                        double spindle_hz) const noexcept {
   if (steady_s_ < std::max(0.3, kSettledRevolutions / spindle_hz)) return false;
-  const double own_hz = std::round(candidate.frequency_hz / spindle_hz) * spindle_hz;
+  const auto own = static_cast<int>(std::lround(candidate.frequency_hz / spindle_hz));
+  const double own_hz = own * spindle_hz;
+  const int every = settings_.teeth > 1 && own % settings_.teeth != 0 ? settings_.teeth : 1;
   double others = 0.0;
   const auto orders = static_cast<int>(0.4 * path.sample_rate_hz() / spindle_hz);
-  for (int order = 1; order <= orders; ++order) {
+  for (int order = every; order <= orders; order += every) {
     const double hz = order * spindle_hz;
     if (std::abs(hz - own_hz) >= 2.5 * path.bin_hz()) others = std::max(others, path.watch().ratio_at(hz));
   }

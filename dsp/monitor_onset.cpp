@@ -22,9 +22,8 @@ constexpr double kSteadyCycles = 0.12;          // by which its turn in a revolu
 // After such a change of the whole vibration's power twice as much is asked for: after a fall the tool has left the cut
 // for a moment, a rise out of the cut may be an entry, which the synchronous level tells of a few revolutions later.
 constexpr double kFallToDoubt = 3.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0;
-constexpr double kLeastOfForced = 0.01;  // displacement over that of the forced vibration
 // A tool that is thrown about leaves no single line: all bins stand far over their floors, for a tenth of a second.
-constexpr double kWild = 25.0;
+constexpr double kWild = 12.0;
 constexpr int kWildHops = 32;
 
 }  // namespace
@@ -59,7 +58,8 @@ void Monitor::look_for_onset(std::size_t index, std::int64_t stamp_ns) noexcept 
   if (!heard_again) suspect.evidence = std::max(0.0, suspect.evidence - 1.0);
   if (suspect.evidence <= 0.0) suspect.line = Line::nothing;
   view_.indicator = std::sqrt(strongest);
-  if (!look_for_wild_chatter(index, stamp_ns)) look_for_standing_chatter(index, stamp_ns);
+  if (look_for_growing_order(index, stamp_ns) || look_for_wild_chatter(index, stamp_ns)) return;
+  look_for_standing_chatter(index, stamp_ns);
 }
 
 // Takes what was heard for the suspect if it is the same line, or if there was none. A line keeps its name while it
@@ -154,6 +154,7 @@ void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const Line
   was_free_ = line == Line::free;
   view_.single_line = line != Line::wild;
   largest_amplitude_ = tone.amplitude;
+  largest_order_ratio_ = 0.0;
   faded_ = false;
   // Back along the measured growth to where the line left its floor (S = 1).
   const double log_amplitude = 0.5 * std::log(std::max(1.0, candidate.ratio * settings_.watch.limit));

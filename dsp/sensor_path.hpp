@@ -57,6 +57,9 @@ class SensorPath {
   [[nodiscard]] SynchronousFilter& filter() noexcept { return filter_; }
   [[nodiscard]] const SynchronousFilter& filter() const noexcept { return filter_; }
   [[nodiscard]] double sample_rate_hz() const noexcept { return rate_; }
+  [[nodiscard]] int axes() const noexcept { return axes_; }
+  // Spindle angle at the newest sample, revolutions, 0 to 1.
+  [[nodiscard]] double angle() const noexcept { return revolutions_; }
   [[nodiscard]] double bin_hz() const noexcept { return rate_ / watch_.window_length(); }
 
  private:

@@ -42,11 +42,12 @@ void SynchronousFilter::forget() noexcept {
   restart();
 }
 
+double SynchronousFilter::memory() const noexcept { return std::clamp(learned_revolutions_ + 0.5, 1.0, memory_); }
+
 void SynchronousFilter::update_gain() noexcept {
   // The gain that forgets with the wanted memory; while little is learned the memory is what has been seen so far.
-  const double memory = std::clamp(learned_revolutions_ + 0.5, 1.0, memory_);
   gain_ =
-      static_cast<float>((1.0 - std::exp(-1.0 / memory)) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
+      static_cast<float>((1.0 - std::exp(-1.0 / memory())) * knots_ / std::max(samples_per_revolution_, 0.9 * knots_));
   usual_gain_ = static_cast<float>(1.0 / (kUsualMemory * samples_per_revolution_));
   const int samples = std::max(8, static_cast<int>(samples_per_revolution_ / 4.0));
   learned_revolutions_ += samples / samples_per_revolution_;
@@ -152,6 +153,19 @@ double SynchronousFilter::displacement(double speed) const noexcept {
     power += std::max(0.0, square - sum * sum);
   }
   return std::sqrt(power);
+}
+
+// The Fourier coefficient of the knots, times what a cubic B-spline makes of it. The spline of c_k stands over knot k
+// - 1.
+std::complex<float> SynchronousFilter::content(int order, int axis) const noexcept {
+  if (knots_ == 0) return {};
+  const double radians = 2.0 * std::numbers::pi * order / knots_, half = 0.5 * radians;
+  const std::complex<double> turn = std::polar(1.0, -radians);
+  std::complex<double> phasor = std::conj(turn), sum;
+  for (int k = 0; k < knots_; ++k, phasor *= turn)
+    sum += static_cast<double>(table_[static_cast<std::size_t>(k)][axis]) * phasor;
+  const double sinc = order != 0 ? std::sin(half) / half : 1.0;
+  return std::complex<float>{sum * (2.0 / knots_ * sinc * sinc * sinc * sinc)};
 }
 
 }  // namespace stillcut

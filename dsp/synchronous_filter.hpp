@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,8 @@ class SynchronousFilter {
 
   // Memory in revolutions that learning settles to; right after restart() it learns as fast as the data allow.
   void set_memory(double revolutions) noexcept { memory_ = revolutions; }
+  // In force now, revolutions.
+  [[nodiscard]] double memory() const noexcept;
   void restart() noexcept { learned_revolutions_ = 0.0; }
   // Forgets all but the mean.
   void forget() noexcept;
@@ -47,6 +50,8 @@ class SynchronousFilter {
   // How far what repeats moves the sensor: its acceleration integrated twice over the angle, root mean square of all
   // axes together, times the square of the speed (rad/s) that it turns with; m, for samples in m/s^2.
   [[nodiscard]] double displacement(double speed) const noexcept;
+  // What repeats `order` times a revolution: its complex amplitude, the phase at angle 0, in units of the samples.
+  [[nodiscard]] std::complex<float> content(int order, int axis) const noexcept;
   // Mean of the repeating part over a revolution: gravity and whatever else is slower than the spindle. The residual
   // plus this mean is the signal without the spindle's orders, and with what lies below them.
   [[nodiscard]] float mean(int axis) const noexcept { return static_cast<float>(mean_[axis]); }

@@ -29,6 +29,7 @@ CoreSettings core_settings(const Cell& cell) {
   settings.monitor.highest_speed = spindle.max_speed;
   settings.monitor.nominal_speed = cut.spindle_speed;
   settings.monitor.has_speed_signal = !can.spindle_speed.empty();
+  settings.monitor.teeth = tool.teeth;
   settings.monitor.watch.limit = cell.detection.limit.value_or(settings.monitor.watch.limit);
   settings.monitor.release_ratio = cell.detection.release_ratio.value_or(settings.monitor.release_ratio);
   settings.compensator.mode = cell.mode;

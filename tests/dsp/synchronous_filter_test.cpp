@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -236,6 +237,29 @@ TEST(SynchronousFilter, PassesALineBelowTheSpindleInResidualAndMeanWithoutTheOrd
         EXPECT_LT(std::sqrt(rest), 0.2) << rate_hz << ' ' << memory << ' ' << line_hz;  // of 7.5
       }
     }
+  }
+}
+
+TEST(SynchronousFilter, TellsTheContentOfEveryOrderItHasLearned) {
+  std::mt19937 random{3};
+  std::uniform_real_distribution<double> share{0.0, 1.0};
+  for (int i = 0; i < 30; ++i) {
+    const double samples = 60.0 + 400.0 * share(random);
+    const int order = 1 + static_cast<int>(0.2 * samples * share(random));
+    const double amplitude = 0.5 + 3.0 * share(random), phase = kRevolution * share(random);
+    SynchronousFilter filter{1};
+    filter.set_samples_per_revolution(samples);
+    filter.set_memory(4.0);
+    for (int n = 0; n < static_cast<int>(40.0 * samples); ++n) {
+      const double turned = n / samples;
+      const std::array<float, 1> x = {static_cast<float>(7.0 + std::cos(kRevolution * turned) +
+                                                         amplitude * std::cos(kRevolution * order * turned + phase))};
+      std::array<float, 1> residual{};
+      filter.process(turned - std::floor(turned), x, residual);
+    }
+    const std::complex<double> expected = std::polar(amplitude, phase) + (order == 1 ? 1.0 : 0.0);
+    EXPECT_LT(std::abs(std::complex<double>{filter.content(order, 0)} - expected), 0.03 * std::abs(expected) + 0.01)
+        << samples << " samples a revolution, order " << order;
   }
 }
 

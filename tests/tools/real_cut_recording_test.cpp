@@ -160,6 +160,34 @@ void expect_fault_and_no_false_onset(const Frames& frames, double fault_from_s, 
   }
 }
 
+TEST(RealCut, IsHeardBeforeThreePointSevenSecondsNamedAndFollowedToTwoHertz) {
+  Pipeline pipeline{cell()};
+  pipeline.core().add_lobes(lobes());
+  std::vector<Event> onsets;
+  int followed = 0;
+  for (const CanFrame& frame : recorded()) {
+    pipeline.feed(frame);
+    for (const Output& output : pipeline.core().outputs()) {
+      if (output.type == Output::Type::event && output.event.type == EventType::chatter_onset)
+        onsets.push_back(output.event);
+    }
+    pipeline.core().clear_outputs();
+    if (const double t = time_of(frame); t >= 4.45 && t <= 4.75) {
+      EXPECT_NEAR(pipeline.core().view().chatter_frequency_hz, 684.0, 2.0) << t;
+      ++followed;
+    }
+  }
+  EXPECT_GT(followed, 50);
+  ASSERT_FALSE(onsets.empty());
+  const auto seconds = [&](const Event& event) {
+    return static_cast<double>(event.stamp_ns - pipeline.core().origin_ns()) * 1e-9;
+  };
+  EXPECT_GE(seconds(onsets.front()), 3.58);
+  EXPECT_LE(seconds(onsets.front()), 3.70);
+  EXPECT_EQ(onsets.back().kind, ChatterKind::regenerative);
+  EXPECT_LE(seconds(onsets.back()), 3.85);
+}
+
 TEST(RealCut, ChatterIsHeardInTimeAtItsFrequencyAndOnlyThere) { expect_one_episode(play(recorded())); }
 
 TEST(RealCut, ACorrectionGoesToASpeedInStepInsideTheLimits) {

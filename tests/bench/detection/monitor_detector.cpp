@@ -17,6 +17,7 @@ MonitorSettings settings_of(const CutPlan& plan) {
   settings.sensors = {SensorSettings{plan.sensor_rate_hz, 7}};
   settings.highest_speed = 1.1 * plan.setup.fastest;
   settings.nominal_speed = plan.setup.cut.spindle_speed;
+  settings.teeth = plan.setup.tool.teeth;
   return settings;
 }
 

@@ -1,0 +1,209 @@
+#include "dsp/order_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dsp/numbers.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kMemory = 32.0;  // revolutions, of what an order was
+constexpr double kNearAMode = 0.2;
+constexpr int kMostForced = 8;      // orders of the teeth
+constexpr double kApartBins = 2.5;  // nearer ones share a window's bins
+constexpr int kStepsToLearn = 32;
+constexpr float kFloorMemory = 160.0F;  // steps
+constexpr float kFloorClip = 4.0F;
+constexpr float kGrows = 1.25F;  // power over that of kSteps - 1 before
+constexpr float kHolds = 0.9F;   // and over the most since it was suspected
+// While the orders of the teeth change by more than they usually do, and by more than this share of what the suspect
+// has moved, it is the cut that changes.
+constexpr float kUsual = 2.5F, kForcedStands = 0.03F;
+constexpr float kStandsOut = 4.0F;  // over the largest ratio of those orders: they have not moved lately
+constexpr float kTurnGain = 0.3F;   // a step
+constexpr int kMostEvidence = 32;
+constexpr std::size_t kFastSteps = 5, kSlowSteps = 9;
+constexpr float kSlowForced = 0.3F;
+constexpr float kSlowSmoothing = 0.3F, kSlowLimit = 0.5F;
+constexpr int kEnoughFast = 5, kEnoughAfterChange = 8, kEnoughSlow = 14;
+
+using Complex = std::complex<float>;
+
+// A line d bins off the middle one, as the three bins about it see it through a Hann window.
+struct Kernel {
+  float below, at, above;
+};
+
+Kernel hann_kernel(double d) noexcept {
+  const double q = d * d * std::numbers::pi * std::numbers::pi;
+  const double sinc = 1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0)));
+  return {static_cast<float>(sinc / ((1.0 + d) * (2.0 + d))), static_cast<float>(sinc / (1.0 - d * d)),
+          static_cast<float>(sinc / ((1.0 - d) * (2.0 - d)))};
+}
+
+bool near_any(std::span<const ExpectedMode> modes, double hz) noexcept {
+  return modes.empty() || std::any_of(modes.begin(), modes.end(), [hz](const ExpectedMode& mode) {
+           return std::abs(hz - mode.frequency_hz) < kNearAMode * mode.frequency_hz;
+         });
+}
+
+}  // namespace
+
+void OrderWatch::forget() noexcept {
+  watched_ = 0;
+  steps_ = 0;
+}
+
+void OrderWatch::choose(const LineWatch& watch, std::span<const ExpectedMode> modes, const Turning& turning) noexcept {
+  watched_ = 0;
+  spindle_hz_ = turning.spindle_hz;
+  const int teeth = std::max(1, turning.teeth);
+  const auto last = static_cast<int>(watch.highest_hz() / spindle_hz_);
+  int forced = 0;
+  for (int order = 1; order <= last && watched_ < kMostOrders; ++order) {
+    const double hz = order * spindle_hz_;
+    const bool near = hz > watch.lowest_hz() && near_any(modes, hz);
+    const bool of_teeth = order % teeth == 0 && hz > 2.0 * watch.bin_hz() && forced < kMostForced;
+    if (!near && !of_teeth) continue;
+    Order& next = orders_[watched_++] = {};
+    next.order = order;
+    next.near_mode = near;
+    next.forced = of_teeth;
+    forced += of_teeth ? 1 : 0;
+  }
+}
+
+float OrderWatch::gain() const noexcept {
+  return held_ ? 0.0F : std::max(1.0F / kFloorMemory, 1.0F / static_cast<float>(steps_));
+}
+
+void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, std::span<const ExpectedMode> modes,
+                      const Turning& turning, double limit) noexcept {
+  if (steps_ == 0) choose(watch, modes, turning);
+  ++steps_;
+  step_s_ = turning.revolutions / turning.spindle_hz;
+  held_ = !std::isnan(followed_hz_);
+  for (std::size_t n = 0; n < watched_; ++n) hear(orders_[n], watch, filter, turning);
+  for (std::size_t n = 0; n < watched_; ++n) {
+    Order& order = orders_[n];
+    if (!order.near_mode) continue;
+    const float forced = forced_changes(order, watch.bin_hz());
+    judge(order.fast, kFastSteps, static_cast<float>(limit), forced);
+    judge(order.slow, kSlowSteps, kSlowLimit * static_cast<float>(limit), kSlowForced * forced);
+  }
+}
+
+void OrderWatch::hear(Order& order, const LineWatch& watch, const SynchronousFilter& filter,
+                      const Turning& turning) noexcept {
+  const double at = order.order * turning.spindle_hz / watch.bin_hz();
+  const auto bin = static_cast<std::size_t>(std::lround(at));
+  const Kernel k = hann_kernel(at - static_cast<double>(bin));
+  // A bin's phase is that of the window's beginning; referred to its middle, neighbours alternate in sign.
+  const float scale = (bin % 2 == 0 ? 1.0F : -1.0F) * 4.0F / static_cast<float>(watch.window_length()) /
+                      (k.below * k.below + k.at * k.at + k.above * k.above);
+  const double turns = order.order * turning.angle;
+  const double phase = -2.0 * std::numbers::pi * (turns - std::floor(turns));
+  const Complex back{scale * static_cast<float>(std::cos(phase)), scale * static_cast<float>(std::sin(phase))};
+  const auto keeps = static_cast<float>(turning.revolutions / filter.memory());
+  const auto loses = static_cast<float>(turning.revolutions / kMemory);
+  const bool followed = held_ && order.order == std::lround(followed_hz_ / spindle_hz_);
+  std::array<Complex, kMaxAxes> u{};
+  Complex turned{};
+  order.changes = 0.0F;
+  for (int a = 0; a < axes_; ++a) {
+    const Complex* const x = watch.spectrum(a).data() + bin;
+    const Complex e = (k.at * x[0] - k.below * x[-1] - k.above * x[1]) * back;
+    order.changes += std::norm(e);
+    if (followed) {  // the sum is not exact for as long as that; the filter itself knows
+      const Complex content = filter.content(order.order, a);
+      if (!order.followed) order.before[a] = content - order.learned[a];
+      order.learned[a] = content - order.before[a];
+    } else {
+      order.learned[a] += keeps * e - loses * order.learned[a];
+    }
+    u[a] = e + order.learned[a];
+    turned += u[a] * std::conj(order.fast.u[a]);
+  }
+  order.followed = followed;
+  order.turn += kTurnGain * (turned - order.turn);
+  const float highest = steps_ <= kStepsToLearn ? order.changes : kFloorClip * order.usual_changes;
+  order.usual_changes += gain() * (std::min(order.changes, highest) - order.usual_changes);
+  smooth(order.fast, 1.0F, u);
+  smooth(order.slow, kSlowSmoothing, u);
+}
+
+void OrderWatch::smooth(Trend& trend, float smoothing, const std::array<Complex, kMaxAxes>& u) noexcept {
+  float power = 0.0F;
+  for (int a = 0; a < axes_; ++a) {
+    trend.u[a] += smoothing * (u[a] - trend.u[a]);
+    power += std::norm(trend.u[a]);
+  }
+  std::copy_backward(trend.power.begin(), trend.power.end() - 1, trend.power.end());
+  trend.power[0] = power;
+  const float highest = steps_ <= kStepsToLearn ? power : kFloorClip * trend.floor;
+  trend.floor += gain() * (std::min(power, highest) - trend.floor);
+}
+
+void OrderWatch::judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept {
+  const float power = trend.power[0];
+  if (steps_ <= kStepsToLearn || !(power > limit * trend.floor)) {
+    trend.evidence = std::max(0, trend.evidence - 1);
+    if (trend.evidence == 0) trend.most = 0.0F;
+    return;
+  }
+  const bool holds = power > kHolds * trend.most;
+  const bool grows = holds && power > kGrows * trend.power[steps] && forced_changes < kForcedStands * power;
+  trend.most = std::max(trend.most, power);
+  trend.evidence = std::clamp(trend.evidence + (grows ? 1 : holds ? 0 : -1), 0, kMostEvidence);
+}
+
+float OrderWatch::forced_changes(const Order& but, double bin_hz) const noexcept {
+  float sum = 0.0F;
+  for (std::size_t n = 0; n < watched_; ++n) {
+    const Order& order = orders_[n];
+    const bool apart = std::abs(order.order - but.order) * spindle_hz_ > kApartBins * bin_hz;
+    if (order.forced && apart) sum += std::max(0.0F, order.changes - kUsual * order.usual_changes);
+  }
+  return sum;
+}
+
+float OrderWatch::forced_ratio(const Order& but, Trend Order::*trend) const noexcept {
+  float most = 0.0F;
+  for (std::size_t n = 0; n < watched_; ++n) {
+    if (orders_[n].forced && orders_[n].order != but.order) most = std::max(most, (orders_[n].*trend).ratio());
+  }
+  return most;
+}
+
+OrderLine OrderWatch::grown() const noexcept {
+  OrderLine line{.frequency_hz = kNaN};
+  for (std::size_t n = 0; n < watched_; ++n) {
+    const Order& order = orders_[n];
+    if (!order.near_mode || order.fast.ratio() < line.ratio) continue;
+    const auto alone = [&](Trend Order::*trend) {
+      return (order.*trend).ratio() > kStandsOut * forced_ratio(order, trend);
+    };
+    const bool enough = order.fast.evidence >= kEnoughAfterChange ||
+                        (order.fast.evidence >= kEnoughFast && alone(&Order::fast)) ||
+                        (order.slow.evidence >= kEnoughSlow && alone(&Order::slow));
+    if (!enough) continue;
+    int axis = 0;
+    for (int a = 1; a < axes_; ++a) {
+      if (std::norm(order.slow.u[a]) > std::norm(order.slow.u[axis])) axis = a;
+    }
+    const double off_hz = std::arg(order.turn) / (2.0 * std::numbers::pi * step_s_);
+    line = {order.order * spindle_hz_ + off_hz, order.order, axis, order.fast.ratio(), std::sqrt(order.fast.power[0])};
+  }
+  return line;
+}
+
+double OrderWatch::ratio_at(double frequency_hz) const noexcept {
+  for (std::size_t n = 0; n < watched_; ++n) {
+    if (orders_[n].order == std::lround(frequency_hz / spindle_hz_)) return orders_[n].fast.ratio();
+  }
+  return 0.0;
+}
+
+}  // namespace stillcut
