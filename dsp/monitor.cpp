@@ -37,9 +37,11 @@ Monitor::Monitor(const MonitorSettings& settings) : settings_{settings}, gate_{s
     }
     SensorPath path{sensor, settings.watch};
     const OrderWatch orders{path.axes()};
-    sensors_.push_back({SampleClock{sensor.sample_rate_hz}, std::move(path), orders});
+    const DecayWatch decay{path.axes()};
+    sensors_.push_back({SampleClock{sensor.sample_rate_hz}, std::move(path), orders, decay});
   }
   view_.indicator = view_.chatter_frequency_hz = view_.structural_frequency_hz = kNaN;
+  view_.decay_per_s = view_.decay_frequency_hz = kNaN;
   view_.state = State::cannot_tell;
 }
 
@@ -118,6 +120,8 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
   const bool trusted = view_.doubts == kNoDoubt;
   const bool able = trusted && sensor.path.watch().ready();
   follow_orders(index, trusted);
+  follow_decay(index, able);
+  if (trusted) look_for_forced_vibration(index, stamp_ns, step_s);
   if (view_.chatter && !trusted) {
     doubt_s_ += step_s;
     if (doubt_s_ > kBlindToEnd_s) end_chatter(stamp_ns, "cannot tell any longer");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dsp/cut_gate.hpp"
+#include "dsp/decay_watch.hpp"
 #include "dsp/line_watch.hpp"
 #include "dsp/order_watch.hpp"
 #include "dsp/sample_clock.hpp"
@@ -45,6 +46,8 @@ struct MonitorView {
   double chatter_amplitude = 0.0;        // m/s^2
   bool structural = false;               // chatter of the robot's structure, by itself or beside the tool's
   double structural_frequency_hz = 0.0;  // NaN without it
+  double decay_per_s = 0.0;              // of the residual mode that dies out slowest in a sound cut; NaN unknown
+  double decay_frequency_hz = 0.0;       // of that mode; NaN unknown
   std::uint32_t doubts = kNoDoubt;
   std::int64_t samples_lost = 0;
 };
@@ -73,6 +76,7 @@ class Monitor {
     SampleClock clock;
     SensorPath path;
     OrderWatch orders;
+    DecayWatch decay;
     int hops_to_orders = 0;
     std::int64_t last_arrival_ns = 0;
     std::int64_t last_loss_event_ns = 0;
@@ -95,6 +99,8 @@ class Monitor {
   [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
   bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_orders(std::size_t sensor, bool trusted) noexcept;
+  void follow_decay(std::size_t sensor, bool trusted) noexcept;
+  void look_for_forced_vibration(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   bool look_for_growing_order(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void look_for_standing_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_chatter(std::int64_t stamp_ns, double step_s) noexcept;
@@ -141,6 +147,9 @@ class Monitor {
   std::array<double, kDoubtCount> clear_for_s_{};
   std::array<Suspect, kMaxSensors> suspect_{}, standing_{};
   std::array<int, kMaxSensors> wild_hops_{};
+  // The order that was told as forced vibration on a mode; 0: none.
+  int forced_order_ = 0;
+  double until_forced_s_ = 0.0;  // it is looked for again
   // The episode of structural chatter that is open.
   std::size_t structural_sensor_ = 0;
   double structural_below_s_ = 0.0;

@@ -2,6 +2,7 @@
 // contact are constant and the orders that the teeth force stay as they are.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "dsp/monitor.hpp"
@@ -15,6 +16,16 @@ constexpr double kRevolutionsToJudge = 42.0;
 constexpr int kHopsAStep = 2;
 // A fall of the whole vibration's power: the tool leaves the cut. A rise out of the cut: it may enter one.
 constexpr double kFalls = 2.5, kRises = 1.8;
+
+constexpr double kForcedEvery_s = 0.25, kForcedShare = 0.5, kOnMode_hz = 3.0;
+
+// Of an order in the power of all that repeats.
+double share_of_order(const SensorPath& path, int order) noexcept {
+  const double level = path.synchronous_level();
+  double power = 0.0;
+  for (int a = 0; a < path.axes(); ++a) power += 0.5 * std::norm(path.filter().content(order, a));
+  return level > 0.0 ? power / (level * level) : 0.0;
+}
 
 }  // namespace
 
@@ -50,6 +61,58 @@ bool Monitor::look_for_growing_order(std::size_t index, std::int64_t stamp_ns) n
   suspect_[index].line = Line::on_order;
   begin_chatter(index, stamp_ns, candidate, tone);
   return true;
+}
+
+// A strong order that stands on a mode is forced vibration as far as can be told; were it chatter, it would stay where
+// it is when the speed changes.
+void Monitor::look_for_forced_vibration(std::size_t index, std::int64_t stamp_ns, double step_s) noexcept {
+  if (index != 0) return;
+  if (gate_.state() != State::cut) {
+    forced_order_ = 0;
+    until_forced_s_ = kForcedEvery_s;
+    return;
+  }
+  until_forced_s_ -= step_s;
+  if (until_forced_s_ > 0.0 || view_.chatter) return;
+  until_forced_s_ = kForcedEvery_s;
+  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
+  int strongest = 0;
+  double most = kForcedShare;
+  for (std::size_t m = 0; m < mode_count_ && spindle_hz > 0.0; ++m) {
+    const ExpectedMode& mode = modes_[m];
+    const auto order = static_cast<int>(std::lround(mode.frequency_hz / spindle_hz));
+    const double reach_hz = std::max(kOnMode_hz, mode.damping_ratio * mode.frequency_hz);
+    if (order < 1 || std::abs(order * spindle_hz - mode.frequency_hz) > reach_hz) continue;
+    const double share = share_of_order(sensors_[index].path, order);
+    if (share < (order == forced_order_ ? 0.5 : 1.0) * most) continue;
+    most = share;
+    strongest = order;
+  }
+  if (strongest != 0 && strongest != forced_order_) {
+    char note[96];
+    std::snprintf(note, sizeof note,
+                  "order %d stands on a mode, %.0f %% of the vibration; a speed 1-2 %% off would tell", strongest,
+                  100.0 * std::min(1.0, most));
+    emit(stamp_ns, EventType::forced_vibration, ChatterKind::unknown, strongest * spindle_hz, note);
+  }
+  forced_order_ = strongest;
+}
+
+void Monitor::follow_decay(std::size_t index, bool able) noexcept {
+  Sensor& sensor = sensors_[index];
+  if (!able || view_.chatter || gate_.state() != State::cut) {
+    sensor.decay.forget();
+  } else {
+    sensor.decay.step(sensor.path.watch(), {modes_.data(), mode_count_});
+  }
+  if (index != 0) return;
+  view_.decay_per_s = view_.decay_frequency_hz = kNaN;
+  for (const Sensor& each : sensors_) {
+    const ModeDecay slowest = each.decay.slowest();
+    if (std::isnan(slowest.per_s) || slowest.per_s >= view_.decay_per_s) continue;
+    view_.decay_per_s = slowest.per_s;
+    view_.decay_frequency_hz = slowest.frequency_hz;
+  }
 }
 
 }  // namespace stillcut

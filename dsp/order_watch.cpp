@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dsp/hann_line.hpp"
 #include "dsp/numbers.hpp"
 
 namespace stillcut {
@@ -30,18 +31,6 @@ constexpr float kSlowSmoothing = 0.3F, kSlowLimit = 0.5F;
 constexpr int kEnoughFast = 5, kEnoughAfterChange = 8, kEnoughSlow = 14;
 
 using Complex = std::complex<float>;
-
-// A line d bins off the middle one, as the three bins about it see it through a Hann window.
-struct Kernel {
-  float below, at, above;
-};
-
-Kernel hann_kernel(double d) noexcept {
-  const double q = d * d * std::numbers::pi * std::numbers::pi;
-  const double sinc = 1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0)));
-  return {static_cast<float>(sinc / ((1.0 + d) * (2.0 + d))), static_cast<float>(sinc / (1.0 - d * d)),
-          static_cast<float>(sinc / ((1.0 - d) * (2.0 - d)))};
-}
 
 bool near_any(std::span<const ExpectedMode> modes, double hz) noexcept {
   return modes.empty() || std::any_of(modes.begin(), modes.end(), [hz](const ExpectedMode& mode) {
@@ -85,7 +74,14 @@ void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, s
   ++steps_;
   step_s_ = turning.revolutions / turning.spindle_hz;
   held_ = !std::isnan(followed_hz_);
-  for (std::size_t n = 0; n < watched_; ++n) hear(orders_[n], watch, filter, turning);
+  // By the angle that each order has turned: powers of the spindle's own turn.
+  const std::complex<double> once = std::polar(1.0, -2.0 * std::numbers::pi * turning.angle);
+  std::complex<double> back = 1.0;
+  int turned = 0;
+  for (std::size_t n = 0; n < watched_; ++n) {
+    for (; turned < orders_[n].order; ++turned) back *= once;
+    hear(orders_[n], std::complex<float>{back}, watch, filter, turning);
+  }
   for (std::size_t n = 0; n < watched_; ++n) {
     Order& order = orders_[n];
     if (!order.near_mode) continue;
@@ -95,17 +91,9 @@ void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, s
   }
 }
 
-void OrderWatch::hear(Order& order, const LineWatch& watch, const SynchronousFilter& filter,
+void OrderWatch::hear(Order& order, Complex back, const LineWatch& watch, const SynchronousFilter& filter,
                       const Turning& turning) noexcept {
-  const double at = order.order * turning.spindle_hz / watch.bin_hz();
-  const auto bin = static_cast<std::size_t>(std::lround(at));
-  const Kernel k = hann_kernel(at - static_cast<double>(bin));
-  // A bin's phase is that of the window's beginning; referred to its middle, neighbours alternate in sign.
-  const float scale = (bin % 2 == 0 ? 1.0F : -1.0F) * 4.0F / static_cast<float>(watch.window_length()) /
-                      (k.below * k.below + k.at * k.at + k.above * k.above);
-  const double turns = order.order * turning.angle;
-  const double phase = -2.0 * std::numbers::pi * (turns - std::floor(turns));
-  const Complex back{scale * static_cast<float>(std::cos(phase)), scale * static_cast<float>(std::sin(phase))};
+  const HannLine line{order.order * turning.spindle_hz / watch.bin_hz(), watch.window_length()};
   const auto keeps = static_cast<float>(turning.revolutions / filter.memory());
   const auto loses = static_cast<float>(turning.revolutions / kMemory);
   const bool followed = held_ && order.order == std::lround(followed_hz_ / spindle_hz_);
@@ -113,8 +101,7 @@ void OrderWatch::hear(Order& order, const LineWatch& watch, const SynchronousFil
   Complex turned{};
   order.changes = 0.0F;
   for (int a = 0; a < axes_; ++a) {
-    const Complex* const x = watch.spectrum(a).data() + bin;
-    const Complex e = (k.at * x[0] - k.below * x[-1] - k.above * x[1]) * back;
+    const Complex e = line.in(watch.spectrum(a)) * back;
     order.changes += std::norm(e);
     if (followed) {  // the sum is not exact for as long as that; the filter itself knows
       const Complex content = filter.content(order.order, a);

@@ -75,7 +75,8 @@ class OrderWatch {
   };
 
   void choose(const LineWatch& watch, std::span<const ExpectedMode> modes, const Turning& turning) noexcept;
-  void hear(Order& order, const LineWatch& watch, const SynchronousFilter& filter, const Turning& turning) noexcept;
+  void hear(Order& order, std::complex<float> back, const LineWatch& watch, const SynchronousFilter& filter,
+            const Turning& turning) noexcept;
   void smooth(Trend& trend, float smoothing, const std::array<std::complex<float>, kMaxAxes>& u) noexcept;
   void judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept;
   [[nodiscard]] float forced_changes(const Order& but, double bin_hz) const noexcept;

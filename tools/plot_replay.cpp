@@ -182,6 +182,22 @@ Panel indicator_panel(const ReplayTrace& replay) {
   return panel;
 }
 
+// A margin that fades: the decay goes to zero.
+Panel decay_panel(const ReplayTrace& replay) {
+  Panel panel;
+  panel.title = "Decay of the mode that dies out slowest, before chatter";
+  panel.y.label = "1/s";
+  panel.height = 0.7;
+  Line line{.x = {}, .y = {}, .color = plot::kGreen, .width = 1.6, .label = ""};
+  for (const TracePoint& point : replay.trace) {
+    line.x.push_back(point.time_s);
+    line.y.push_back(point.decay_per_s);
+  }
+  panel.lines.push_back(std::move(line));
+  panel.limits.push_back({0.0, "no margin left", plot::kVermilion});
+  return panel;
+}
+
 double speed_at(const ReplayTrace& replay, double time_s) {
   const auto later = std::upper_bound(replay.trace.begin(), replay.trace.end(), time_s,
                                       [](double time, const TracePoint& point) { return time < point.time_s; });
@@ -252,6 +268,11 @@ Figure replay_figure(const ReplayTrace& replay) {
   figure.x = {.label = "time [s]", .min = std::min(replay.start_s, 0.0), .max = end_time(replay)};
   figure.height = 1080;
   figure.panels = {vibration_panel(replay), spectrogram_panel(replay), indicator_panel(replay), speed_panel(replay)};
+  const auto told = [](const TracePoint& point) { return std::isfinite(point.decay_per_s); };
+  if (std::any_of(replay.trace.begin(), replay.trace.end(), told)) {
+    figure.panels.insert(figure.panels.begin() + 3, decay_panel(replay));
+    figure.height += 120;
+  }
   for (EventMark mark : event_marks(replay)) {  // the same moments in the panels above, without words
     mark.text.clear();
     figure.panels[0].events.push_back(mark);

@@ -1,5 +1,6 @@
 // The one picture of a replayed cut: what the sensor felt, where its frequencies lie, when the monitor called it
-// chatter, and which spindle speed it asked for instead; four panels on one time axis.
+// chatter, and which spindle speed it asked for instead; four panels on one time axis, a fifth where the decay of a
+// mode could be measured before that.
 #pragma once
 
 #include <filesystem>
@@ -18,6 +19,7 @@ struct TracePoint {
   double spindle_speed_rpm = 0.0;
   State state = State::idle;
   double chatter_frequency_hz = kNaN;  // NaN: no chatter just now
+  double decay_per_s = kNaN;           // of the residual mode that dies out slowest; NaN: cannot be told
 };
 
 struct ReplayEvent {

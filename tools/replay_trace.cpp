@@ -44,7 +44,7 @@ void TraceCollector::add(const Pipeline& pipeline) {
   if (view.stamp_ns == last_view_ns_) return;
   last_view_ns_ = view.stamp_ns;
   trace_.trace.push_back({static_cast<double>(view.stamp_ns - origin_ns) * 1e-9, view.indicator,
-                          rad_s_to_rpm(view.speed), view.state, view.chatter_frequency_hz});
+                          rad_s_to_rpm(view.speed), view.state, view.chatter_frequency_hz, view.decay_per_s});
 }
 
 void TraceCollector::add(const Event& event, std::int64_t origin_ns) {

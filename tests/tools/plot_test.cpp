@@ -215,7 +215,7 @@ ReplayTrace some_replay() {
   for (int i = 0; i < 400; ++i) {
     const double time = i * 0.01;
     const State state = time < 0.5 ? State::air : time < 2.0 ? State::cut : time < 3.5 ? State::chatter : State::air;
-    replay.trace.push_back({time, time < 2.0 ? 0.3 : 4.0, 9000.0, state, state == State::chatter ? 716.0 : NAN});
+    replay.trace.push_back({time, time < 2.0 ? 0.3 : 4.0, 9000.0, state, state == State::chatter ? 716.0 : NAN, NAN});
   }
   replay.events = {{0.5, EventType::cut_entry, ChatterKind::unknown, NAN, 9000},
                    {2.0, EventType::chatter_onset, ChatterKind::regenerative, 716, 9000},
@@ -243,6 +243,18 @@ TEST(ReplayFigure, TellsOnsetCorrectionAndWhatItRestsOn) {
   const Line& target = speed.lines[1];
   EXPECT_EQ(target.y[0], 7160.0);
   EXPECT_TRUE(std::isnan(target.y.back()));  // ends with the chatter
+}
+
+TEST(ReplayFigure, ShowsTheDecayWhereItWasMeasured) {
+  ReplayTrace replay = some_replay();
+  for (TracePoint& point : replay.trace) {
+    if (point.time_s > 1.0 && point.time_s < 2.0) point.decay_per_s = 20.0 * (2.0 - point.time_s);
+  }
+  const Figure figure = replay_figure(replay);
+  ASSERT_EQ(figure.panels.size(), 5U);
+  const Line& decay = figure.panels[3].lines[0];
+  EXPECT_TRUE(std::isnan(decay.y[50]));
+  EXPECT_NEAR(decay.y[150], 10.0, 1e-9);
 }
 
 TEST(ReplayFigure, HoldsWithNothingToShow) {
