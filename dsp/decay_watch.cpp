@@ -9,7 +9,7 @@
 namespace stillcut {
 namespace {
 
-constexpr float kMemory = 480.0F;  // hops, 1.5 s
+constexpr float kDecayMemory = 480.0F;  // hops, 1.5 s
 constexpr int kHopsToMeasure = 240;
 constexpr float kLeastOverOne = 0.4F, kLeastOverTwo = 0.15F;  // of the power: below it is what chance gives
 
@@ -27,14 +27,15 @@ void DecayWatch::step(const LineWatch& watch, std::span<const ExpectedMode> mode
   const auto now = static_cast<std::size_t>(hops_) % kKept, one = (now + kKept - kHopsAWindow) % kKept,
              two = (now + 1) % kKept;  // the oldest that is kept
   ++hops_;
-  const float gain = std::max(1.0F / kMemory, 1.0F / static_cast<float>(hops_));
+  const float gain = std::max(1.0F / kDecayMemory, 1.0F / static_cast<float>(hops_));
   for (std::size_t m = 0; m < modes_; ++m) {
     Heard& mode = heard_[m];
     const HannLine line{mode.frequency_hz / watch.bin_hz(), watch.window_length()};
     float power = 0.0F;
     Complex over_one, over_two;
+    const ComplexLanes heard = line.in(watch.spectrum());
     for (int a = 0; a < axes_; ++a) {
-      const Complex z = mode.line[now][a] = line.in(watch.spectrum(a));
+      const Complex z = mode.line[now][a] = {heard.re[a], heard.im[a]};
       power += std::norm(z);
       over_one += z * std::conj(mode.line[one][a]);
       over_two += z * std::conj(mode.line[two][a]);

@@ -15,13 +15,17 @@ bool has_only_small_factors(int n) {
 }
 
 kiss_fftr_state* make_plan(int length) {
-  if (length < 4 || length % 2 != 0 || !has_only_small_factors(length)) {
-    throw std::invalid_argument("FFT length must be even and a product of 2, 3 and 5");
-  }
+  require_fft_length(length);
   return kiss_fftr_alloc(length, 0, nullptr, nullptr);
 }
 
 }  // namespace
+
+void require_fft_length(int length) {
+  if (length < 4 || length % 2 != 0 || !has_only_small_factors(length)) {
+    throw std::invalid_argument("FFT length must be even and a product of 2, 3 and 5");
+  }
+}
 
 RealFft::RealFft(int length)
     : length_{length}, plan_{make_plan(length), [](kiss_fftr_state* p) { kiss_fftr_free(p); }} {

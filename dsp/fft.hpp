@@ -9,10 +9,12 @@ struct kiss_fftr_state;
 
 namespace stillcut {
 
+// Even, a product of 2, 3 and 5 (other factors would allocate while running); std::invalid_argument otherwise.
+void require_fft_length(int length);
+
 class RealFft {
  public:
-  // length: even, a product of 2, 3 and 5 (other factors would allocate while running); std::invalid_argument
-  // otherwise.
+  // length: see require_fft_length
   explicit RealFft(int length);
 
   [[nodiscard]] int length() const noexcept { return length_; }

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <numbers>
 #include <span>
+
+#include "dsp/axes_fft.hpp"
 
 namespace stillcut {
 
@@ -29,10 +30,10 @@ struct HannLine {
     above = static_cast<float>(-scale * right);
   }
 
-  // Complex amplitude, its phase that in the middle of the window.
-  [[nodiscard]] std::complex<float> in(std::span<const std::complex<float>> spectrum) const noexcept {
-    const std::complex<float>* const x = spectrum.data() + bin;
-    return at * x[0] + below * x[-1] + above * x[1];
+  // Complex amplitude of every axis, its phase that in the middle of the window.
+  [[nodiscard]] ComplexLanes in(std::span<const ComplexLanes> spectrum) const noexcept {
+    const ComplexLanes* const x = spectrum.data() + bin;
+    return {at * x[0].re + below * x[-1].re + above * x[1].re, at * x[0].im + below * x[-1].im + above * x[1].im};
   }
 };
 

@@ -42,6 +42,7 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
       fft_{length_},
       window_(length_),
       windowed_(length_),
+      spectrum_(bins_),
       inverse_limit_(bins_),
       ratio_(bins_, 0.0F),
       over_floor_(bins_, 0.0F),
@@ -52,9 +53,9 @@ LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& s
     sum += window_[n];
   }
   power_scale_ = 4.0F / (sum * sum);  // a sine of amplitude A gives A^2
+  for (auto& axis : residual_)
+    axis.assign(2 * kept_, 0.0F);  // also of axes that are not there: the FFT has lanes for three
   for (int a = 0; a < axes_; ++a) {
-    spectrum_[a].resize(bins_);
-    residual_[a].assign(2 * kept_, 0.0F);
     power_[a].assign(bins_, 0.0F);
     floor_[a].assign(bins_, 0.0F);
   }
@@ -101,16 +102,13 @@ void LineWatch::make_room() noexcept {
 }
 
 void LineWatch::transform() noexcept {
-  for (int a = 0; a < axes_; ++a) {
-    const float* const newest = window(a).data();
-    for (int n = 0; n < length_; ++n) windowed_[n] = newest[n] * window_[n];
-    fft_.transform(windowed_, spectrum_[a]);
-    const std::complex<float>* const spectrum = spectrum_[a].data();
-    float* const power = power_[a].data();
-    for (int b = first_; b <= last_; ++b) {
-      const float re = spectrum[b].real(), im = spectrum[b].imag();
-      power[b] = power_scale_ * (re * re + im * im);
-    }
+  const float *const x = window(0).data(), *const y = window(1).data(), *const z = window(2).data();
+  for (int n = 0; n < length_; ++n) windowed_[n] = window_[n] * Lanes{x[n], y[n], z[n], 0.0F};
+  fft_.transform(windowed_, spectrum_);
+  for (int b = first_; b <= last_; ++b) {
+    const auto [re, im] = spectrum_[b];
+    const Lanes power = power_scale_ * (re * re + im * im);
+    for (int a = 0; a < axes_; ++a) power_[a][b] = power[a];
   }
 }
 

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "dsp/fft.hpp"
+#include "dsp/axes_fft.hpp"
 #include "dsp/lanes.hpp"
 
 namespace stillcut {
@@ -75,8 +75,9 @@ class LineWatch {
     return std::span{residual_[axis]}.subspan(static_cast<std::size_t>(begin_), static_cast<std::size_t>(kept_));
   }
   [[nodiscard]] int window_length() const noexcept { return length_; }
-  // Of the newest window under its Hann weights, a value a bin; those between lowest_hz() and highest_hz() are watched.
-  [[nodiscard]] std::span<const std::complex<float>> spectrum(int axis) const noexcept { return spectrum_[axis]; }
+  // Of the newest window under its Hann weights, a value a bin, a lane an axis; those between lowest_hz() and
+  // highest_hz() are watched.
+  [[nodiscard]] std::span<const ComplexLanes> spectrum() const noexcept { return spectrum_; }
   [[nodiscard]] double bin_hz() const noexcept { return bin_hz_; }
   [[nodiscard]] double lowest_hz() const noexcept { return first_ * bin_hz_; }
   [[nodiscard]] double highest_hz() const noexcept { return last_ * bin_hz_; }
@@ -112,9 +113,10 @@ class LineWatch {
   int axes_, length_, kept_, hop_, bins_, first_, last_;  // lines are sought between bins first_ and last_
   double bin_hz_;
   LineWatchSettings settings_;
-  RealFft fft_;
-  std::vector<float> window_, windowed_;
-  std::array<std::vector<std::complex<float>>, 3> spectrum_;
+  AxesFft fft_;
+  std::vector<float> window_;
+  std::vector<Lanes> windowed_;
+  std::vector<ComplexLanes> spectrum_;
   std::array<std::vector<float>, 3> residual_, power_, floor_;  // of residual_, begin_ .. begin_ + kept_ is valid
   std::array<std::vector<float>, kHopsToStay> history_;         // S of the last hops
   std::vector<float> inverse_limit_, ratio_, over_floor_;

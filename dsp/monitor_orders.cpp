@@ -11,7 +11,8 @@
 namespace stillcut {
 namespace {
 
-constexpr double kRevolutionsToLearn = 10.0;  // of constant speed and contact, until the synchronous filter has settled
+constexpr double kRevolutionsToSettle =
+    10.0;  // of constant speed and contact, until the synchronous filter has settled
 constexpr double kRevolutionsToJudge = 42.0;
 constexpr int kHopsAStep = 2;
 // A fall of the whole vibration's power: the tool leaves the cut. A rise out of the cut: it may enter one.
@@ -35,7 +36,7 @@ void Monitor::follow_orders(std::size_t index, bool trusted) noexcept {
   const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
   const double hop_s = path.watch().hop_length() / path.sample_rate_hz();
   const bool held = gate_.state() != State::cut && gate_.state() != State::air;
-  if (!trusted || held || steady_s_ * spindle_hz < kRevolutionsToLearn) {
+  if (!trusted || held || steady_s_ * spindle_hz < kRevolutionsToSettle) {
     sensor.orders.forget();
     sensor.hops_to_orders = kHopsAStep;
     return;

@@ -10,31 +10,31 @@
 namespace stillcut {
 namespace {
 
-constexpr double kMemory = 32.0;  // revolutions, of what an order was
-constexpr double kNearAMode = 0.2;
+constexpr double kOrderMemory = 32.0;  // revolutions, of what an order was
+constexpr double kNearExpected = 0.2;
 constexpr int kMostForced = 8;      // orders of the teeth
 constexpr double kApartBins = 2.5;  // nearer ones share a window's bins
-constexpr int kStepsToLearn = 32;
-constexpr float kFloorMemory = 160.0F;  // steps
-constexpr float kFloorClip = 4.0F;
-constexpr float kGrows = 1.25F;  // power over that of kSteps - 1 before
-constexpr float kHolds = 0.9F;   // and over the most since it was suspected
+constexpr int kOrderStepsToLearn = 32;
+constexpr float kOrderFloorMemory = 160.0F;  // steps
+constexpr float kOrderFloorClip = 4.0F;
+constexpr float kOrderGrows = 1.25F;  // power over that of kSteps - 1 before
+constexpr float kOrderHolds = 0.9F;   // and over the most since it was suspected
 // While the orders of the teeth change by more than they usually do, and by more than this share of what the suspect
 // has moved, it is the cut that changes.
 constexpr float kUsual = 2.5F, kForcedStands = 0.03F;
 constexpr float kStandsOut = 4.0F;  // over the largest ratio of those orders: they have not moved lately
 constexpr float kTurnGain = 0.3F;   // a step
-constexpr int kMostEvidence = 32;
+constexpr int kMostOrderEvidence = 32;
 constexpr std::size_t kFastSteps = 5, kSlowSteps = 9;
 constexpr float kSlowForced = 0.3F;
-constexpr float kSlowSmoothing = 0.3F, kSlowLimit = 0.5F;
+constexpr float kSlowTrendSmoothing = 0.3F, kSlowTrendLimit = 0.5F;
 constexpr int kEnoughFast = 5, kEnoughAfterChange = 8, kEnoughSlow = 14;
 
 using Complex = std::complex<float>;
 
 bool near_any(std::span<const ExpectedMode> modes, double hz) noexcept {
   return modes.empty() || std::any_of(modes.begin(), modes.end(), [hz](const ExpectedMode& mode) {
-           return std::abs(hz - mode.frequency_hz) < kNearAMode * mode.frequency_hz;
+           return std::abs(hz - mode.frequency_hz) < kNearExpected * mode.frequency_hz;
          });
 }
 
@@ -65,7 +65,7 @@ void OrderWatch::choose(const LineWatch& watch, std::span<const ExpectedMode> mo
 }
 
 float OrderWatch::gain() const noexcept {
-  return held_ ? 0.0F : std::max(1.0F / kFloorMemory, 1.0F / static_cast<float>(steps_));
+  return held_ ? 0.0F : std::max(1.0F / kOrderFloorMemory, 1.0F / static_cast<float>(steps_));
 }
 
 void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, std::span<const ExpectedMode> modes,
@@ -87,7 +87,7 @@ void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, s
     if (!order.near_mode) continue;
     const float forced = forced_changes(order, watch.bin_hz());
     judge(order.fast, kFastSteps, static_cast<float>(limit), forced);
-    judge(order.slow, kSlowSteps, kSlowLimit * static_cast<float>(limit), kSlowForced * forced);
+    judge(order.slow, kSlowSteps, kSlowTrendLimit * static_cast<float>(limit), kSlowForced * forced);
   }
 }
 
@@ -95,13 +95,14 @@ void OrderWatch::hear(Order& order, Complex back, const LineWatch& watch, const 
                       const Turning& turning) noexcept {
   const HannLine line{order.order * turning.spindle_hz / watch.bin_hz(), watch.window_length()};
   const auto keeps = static_cast<float>(turning.revolutions / filter.memory());
-  const auto loses = static_cast<float>(turning.revolutions / kMemory);
+  const auto loses = static_cast<float>(turning.revolutions / kOrderMemory);
   const bool followed = held_ && order.order == std::lround(followed_hz_ / spindle_hz_);
   std::array<Complex, kMaxAxes> u{};
   Complex turned{};
   order.changes = 0.0F;
+  const ComplexLanes heard = line.in(watch.spectrum());
   for (int a = 0; a < axes_; ++a) {
-    const Complex e = line.in(watch.spectrum(a)) * back;
+    const Complex e = Complex{heard.re[a], heard.im[a]} * back;
     order.changes += std::norm(e);
     if (followed) {  // the sum is not exact for as long as that; the filter itself knows
       const Complex content = filter.content(order.order, a);
@@ -115,10 +116,10 @@ void OrderWatch::hear(Order& order, Complex back, const LineWatch& watch, const 
   }
   order.followed = followed;
   order.turn += kTurnGain * (turned - order.turn);
-  const float highest = steps_ <= kStepsToLearn ? order.changes : kFloorClip * order.usual_changes;
+  const float highest = steps_ <= kOrderStepsToLearn ? order.changes : kOrderFloorClip * order.usual_changes;
   order.usual_changes += gain() * (std::min(order.changes, highest) - order.usual_changes);
   smooth(order.fast, 1.0F, u);
-  smooth(order.slow, kSlowSmoothing, u);
+  smooth(order.slow, kSlowTrendSmoothing, u);
 }
 
 void OrderWatch::smooth(Trend& trend, float smoothing, const std::array<Complex, kMaxAxes>& u) noexcept {
@@ -129,21 +130,21 @@ void OrderWatch::smooth(Trend& trend, float smoothing, const std::array<Complex,
   }
   std::copy_backward(trend.power.begin(), trend.power.end() - 1, trend.power.end());
   trend.power[0] = power;
-  const float highest = steps_ <= kStepsToLearn ? power : kFloorClip * trend.floor;
+  const float highest = steps_ <= kOrderStepsToLearn ? power : kOrderFloorClip * trend.floor;
   trend.floor += gain() * (std::min(power, highest) - trend.floor);
 }
 
 void OrderWatch::judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept {
   const float power = trend.power[0];
-  if (steps_ <= kStepsToLearn || !(power > limit * trend.floor)) {
+  if (steps_ <= kOrderStepsToLearn || !(power > limit * trend.floor)) {
     trend.evidence = std::max(0, trend.evidence - 1);
     if (trend.evidence == 0) trend.most = 0.0F;
     return;
   }
-  const bool holds = power > kHolds * trend.most;
-  const bool grows = holds && power > kGrows * trend.power[steps] && forced_changes < kForcedStands * power;
+  const bool holds = power > kOrderHolds * trend.most;
+  const bool grows = holds && power > kOrderGrows * trend.power[steps] && forced_changes < kForcedStands * power;
   trend.most = std::max(trend.most, power);
-  trend.evidence = std::clamp(trend.evidence + (grows ? 1 : holds ? 0 : -1), 0, kMostEvidence);
+  trend.evidence = std::clamp(trend.evidence + (grows ? 1 : holds ? 0 : -1), 0, kMostOrderEvidence);
 }
 
 float OrderWatch::forced_changes(const Order& but, double bin_hz) const noexcept {
