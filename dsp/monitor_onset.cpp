@@ -21,7 +21,7 @@ constexpr double kHoldsPeak = 0.9;              // and over the largest since it
 constexpr double kSteadyCycles = 0.12;          // by which its turn in a revolution may change
 // After such a change of the whole vibration's power twice as much is asked for: after a fall the tool has left the cut
 // for a moment, a rise out of the cut may be an entry, which the synchronous level tells of a few revolutions later.
-constexpr double kFallToDoubt = 3.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0;
+constexpr double kFallToDoubt = 3.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0, kNewCut_s = 0.3;
 // A tool that is thrown about leaves no single line: all bins stand far over their floors, for a tenth of a second.
 constexpr double kWild = 12.0;
 constexpr int kWildHops = 32;
@@ -86,7 +86,7 @@ bool Monitor::add_evidence(Suspect& suspect, const Suspect& heard, const Tone& t
 double Monitor::evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept {
   const double enough = suspect.line == Line::free ? kEnoughFree : kEnoughOnOrder;
   const bool entering = gate_.state() == State::air && path.rise() > kRiseToDoubt;
-  return entering || path.fall() > kFallToDoubt ? kDoubtAsks * enough : enough;
+  return entering || steady_s_ < kNewCut_s || path.fall() > kFallToDoubt ? kDoubtAsks * enough : enough;
 }
 
 bool Monitor::look_for_wild_chatter(std::size_t index, std::int64_t stamp_ns) noexcept {

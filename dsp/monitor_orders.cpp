@@ -54,7 +54,7 @@ bool Monitor::look_for_growing_order(std::size_t index, std::int64_t stamp_ns) n
   const SensorPath& path = sensors_[index].path;
   if (steady_s_ * view_.speed < 2.0 * std::numbers::pi * kRevolutionsToJudge || path.fall() > kFalls) return false;
   if (gate_.state() == State::air && path.rise() > kRises) return false;
-  const OrderLine line = sensors_[index].orders.grown();
+  const OrderLine line = sensors_[index].orders.grown(path.filter());
   if (!(line.frequency_hz > 0.0) || (settings_.teeth > 1 && line.order % settings_.teeth == 0)) return false;
   const LineCandidate candidate{line.frequency_hz, line.ratio / settings_.watch.limit, line.axis};
   const Tone tone{.frequency_hz = line.frequency_hz, .amplitude = line.amplitude};

@@ -23,7 +23,8 @@ constexpr float kOrderHolds = 0.9F;   // and over the most since it was suspecte
 // has moved, it is the cut that changes.
 constexpr float kUsual = 2.5F, kForcedStands = 0.03F;
 constexpr float kStandsOut = 4.0F;  // over the largest ratio of those orders: they have not moved lately
-constexpr float kTurnGain = 0.3F;   // a step
+constexpr float kBeyond = 2.5F;
+constexpr float kTurnGain = 0.3F;  // a step
 constexpr int kMostOrderEvidence = 32;
 constexpr std::size_t kFastSteps = 5, kSlowSteps = 9;
 constexpr float kSlowForced = 0.3F;
@@ -165,7 +166,14 @@ float OrderWatch::forced_ratio(const Order& but, Trend Order::*trend) const noex
   return most;
 }
 
-OrderLine OrderWatch::grown() const noexcept {
+// A deeper cut makes forced orders larger, in proportion and somewhat beyond.
+bool OrderWatch::beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept {
+  float before = 0.0F;
+  for (int a = 0; a < axes_; ++a) before += std::norm(filter.content(order.order, a) - order.learned[a]);
+  return order.fast.power[0] > kBeyond * kBeyond * before;
+}
+
+OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
   OrderLine line{.frequency_hz = kNaN};
   for (std::size_t n = 0; n < watched_; ++n) {
     const Order& order = orders_[n];
@@ -176,7 +184,7 @@ OrderLine OrderWatch::grown() const noexcept {
     const bool enough = order.fast.evidence >= kEnoughAfterChange ||
                         (order.fast.evidence >= kEnoughFast && alone(&Order::fast)) ||
                         (order.slow.evidence >= kEnoughSlow && alone(&Order::slow));
-    if (!enough) continue;
+    if (!enough || !beyond_what_it_was(order, filter)) continue;
     int axis = 0;
     for (int a = 1; a < axes_; ++a) {
       if (std::norm(order.slow.u[a]) > std::norm(order.slow.u[axis])) axis = a;

@@ -47,7 +47,7 @@ class OrderWatch {
             const Turning& turning, double limit) noexcept;
 
   // The strongest of the orders that have grown for long enough.
-  [[nodiscard]] OrderLine grown() const noexcept;
+  [[nodiscard]] OrderLine grown(const SynchronousFilter& filter) const noexcept;
   // Power of u over its floor of the order nearest to a frequency; 0: it is not watched.
   [[nodiscard]] double ratio_at(double frequency_hz) const noexcept;
   // While chatter is followed at a frequency what its order was is kept, and floors with it. NaN: no chatter.
@@ -81,6 +81,7 @@ class OrderWatch {
   void judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept;
   [[nodiscard]] float forced_changes(const Order& but, double bin_hz) const noexcept;
   [[nodiscard]] float forced_ratio(const Order& but, Trend Order::*trend) const noexcept;
+  [[nodiscard]] bool beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept;
   [[nodiscard]] float gain() const noexcept;
 
   int axes_;
