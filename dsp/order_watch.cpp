@@ -23,7 +23,7 @@ constexpr float kOrderHolds = 0.9F;   // and over the most since it was suspecte
 // has moved, it is the cut that changes.
 constexpr float kUsual = 2.5F, kForcedStands = 0.03F;
 constexpr float kStandsOut = 4.0F;  // over the largest ratio of those orders: they have not moved lately
-constexpr float kBeyond = 2.5F;
+constexpr float kBeyond = 2.5F, kBeyondAlone = 1.5F;
 constexpr float kTurnGain = 0.3F;  // a step
 constexpr int kMostOrderEvidence = 32;
 constexpr std::size_t kFastSteps = 5, kSlowSteps = 9;
@@ -167,10 +167,10 @@ float OrderWatch::forced_ratio(const Order& but, Trend Order::*trend) const noex
 }
 
 // A deeper cut makes forced orders larger, in proportion and somewhat beyond.
-bool OrderWatch::beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept {
+bool OrderWatch::beyond_what_it_was(const Order& order, float times, const SynchronousFilter& filter) const noexcept {
   float before = 0.0F;
   for (int a = 0; a < axes_; ++a) before += std::norm(filter.content(order.order, a) - order.learned[a]);
-  return order.fast.power[0] > kBeyond * kBeyond * before;
+  return order.fast.power[0] > times * times * before;
 }
 
 OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
@@ -181,10 +181,10 @@ OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
     const auto alone = [&](Trend Order::*trend) {
       return (order.*trend).ratio() > kStandsOut * forced_ratio(order, trend);
     };
-    const bool enough = order.fast.evidence >= kEnoughAfterChange ||
-                        (order.fast.evidence >= kEnoughFast && alone(&Order::fast)) ||
-                        (order.slow.evidence >= kEnoughSlow && alone(&Order::slow));
-    if (!enough || !beyond_what_it_was(order, filter)) continue;
+    const bool alone_enough = (order.fast.evidence >= kEnoughFast && alone(&Order::fast)) ||
+                              (order.slow.evidence >= kEnoughSlow && alone(&Order::slow));
+    const bool enough = alone_enough || order.fast.evidence >= kEnoughAfterChange;
+    if (!enough || !beyond_what_it_was(order, alone_enough ? kBeyondAlone : kBeyond, filter)) continue;
     int axis = 0;
     for (int a = 1; a < axes_; ++a) {
       if (std::norm(order.slow.u[a]) > std::norm(order.slow.u[axis])) axis = a;

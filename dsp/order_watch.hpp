@@ -81,7 +81,8 @@ class OrderWatch {
   void judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept;
   [[nodiscard]] float forced_changes(const Order& but, double bin_hz) const noexcept;
   [[nodiscard]] float forced_ratio(const Order& but, Trend Order::*trend) const noexcept;
-  [[nodiscard]] bool beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept;
+  [[nodiscard]] bool beyond_what_it_was(const Order& order, float times,
+                                        const SynchronousFilter& filter) const noexcept;
   [[nodiscard]] float gain() const noexcept;
 
   int axes_;
