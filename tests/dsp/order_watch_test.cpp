@@ -54,7 +54,7 @@ TEST(OrderWatch, NamesFrequencyAndAmplitudeOfWhatGrowsOnOrNearAnOrder) {
   for (int i = 0; i < 40; ++i) {
     const double spindle_hz = 80.0 + 120.0 * share(random), off_hz = i % 2 == 0 ? 0.0 : 6.0 * share(random) - 3.0;
     const int order = 1 + 2 * (2 + static_cast<int>(3.0 * share(random)));
-    const double growth_per_s = spindle_hz * (0.06 + 0.15 * share(random));
+    const double growth_per_s = spindle_hz * (0.09 + 0.12 * share(random));
     SCOPED_TRACE(testing::Message() << spindle_hz << " Hz, order " << order << ", off by " << off_hz << " Hz, growth "
                                     << growth_per_s);
     const Heard heard = listen(spindle_hz, order, off_hz, growth_per_s, random);
