@@ -1,0 +1,50 @@
+#include "rt/brake.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillcut {
+namespace {
+
+// Slowing down (jerk -1), in quantities mirrored so that the start is too fast: until the speed is back at its upper
+// limit, but not beyond the last instant at which the lower limit can still be kept.
+Brake slow_down(double v0, double a0, double vmax, double vmin, double amin) noexcept {
+  const double to_limit = a0 + std::sqrt(std::max(0.0, a0 * a0 + 2 * (v0 - vmax)));
+  const double to_last = a0 + std::sqrt(std::max(0.0, a0 * a0 / 2 + v0 - vmin));  // there v - a^2/2 = vmin
+  const double ramp = std::max(0.0, std::min(to_limit, to_last));
+  if (ramp <= a0 - amin) return {-1.0, ramp, 0.0};
+  const double v = v0 + (a0 - amin) * (a0 + amin) / 2;
+  const double hold = std::min((v - vmax) / -amin, (v - amin * amin / 2 - vmin) / -amin);
+  return {-1.0, std::max(0.0, a0 - amin), std::max(0.0, hold)};
+}
+
+// The start's acceleration is above its limit.
+Brake ease(double v0, double a0, double vmax, double vmin, double amax, double amin) noexcept {
+  if (v0 + a0 * a0 / 2 > vmax) return slow_down(v0, a0, vmax, vmin, amin);
+  const double v = v0 + (a0 - amax) * (a0 + amax) / 2;
+  const double hold = std::min((vmin - v) / amax, (vmax - amax * amax / 2 - v) / amax);
+  return {-1.0, a0 - amax, std::max(0.0, hold)};
+}
+
+Brake mirrored(Brake brake) noexcept {
+  brake.jerk = -brake.jerk;
+  return brake;
+}
+
+}  // namespace
+
+Brake brake_of(const AxisMove& s) noexcept {
+  if (s.a0 > s.amax) return ease(s.v0, s.a0, s.vmax, s.vmin, s.amax, s.amin);
+  if (s.a0 < s.amin) return mirrored(ease(-s.v0, -s.a0, -s.vmin, -s.vmax, -s.amin, -s.amax));
+  // The speed at which the acceleration can be back at zero.
+  const double v_end = s.v0 + s.a0 * std::abs(s.a0) / 2;
+  if ((s.v0 > s.vmax && v_end > s.vmin) || (s.a0 > 0 && v_end > s.vmax)) {
+    return slow_down(s.v0, s.a0, s.vmax, s.vmin, s.amin);
+  }
+  if ((s.v0 < s.vmin && v_end < s.vmax) || (s.a0 < 0 && v_end < s.vmin)) {
+    return mirrored(slow_down(-s.v0, -s.a0, -s.vmin, -s.vmax, -s.amax));
+  }
+  return {};
+}
+
+}  // namespace stillcut

@@ -1,0 +1,76 @@
+#include "rt/extremal_moves.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace stillcut {
+
+FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  FarthestMoves f;
+  f.side = side;
+  f.a0 = side * move.a0;
+  f.af = side * move.af;
+  const double v0 = side * move.v0, vf = side * move.vf;
+  const double a0_squared = f.a0 * f.a0, af_squared = f.af * f.af;
+  f.w0 = v0 - a0_squared / 2;
+  f.wf = vf - af_squared / 2;
+  f.c = (vf - v0) + (f.a0 - f.af) * (f.a0 + f.af) / 2;
+  f.sigma = f.w0 + f.wf;
+  f.gap_rounding = 4 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
+  // Carrying the ends to the instants without acceleration: a ramp from 0 to a covers w a + a^3/6.
+  const double from_start = f.a0 * (f.w0 + a0_squared / 6), to_end = f.af * (f.wf + af_squared / 6);
+  f.distance = side * move.distance + from_start - to_end;
+  f.distance_rounding =
+      move.distance_rounding +
+      4 * kEpsilon * (std::abs(f.a0) * (std::abs(v0) + a0_squared) + std::abs(f.af) * (std::abs(vf) + af_squared));
+  const bool up = side > 0;
+  f.m = up ? move.amax : -move.amin;
+  f.n = up ? -move.amin : move.amax;
+  f.v = up ? move.vmax : -move.vmin;
+  // A gap within rounding is none where a plain ramp between accelerations of one sign closes it; otherwise a move
+  // planned again on its last ramp would make a detour.
+  if (f.a0 * f.af > 0 && std::abs(f.c) <= f.gap_rounding) {
+    f.c = 0.0;
+    f.reversed = f.a0 < 0;
+  } else {
+    f.reversed = f.c < 0;
+  }
+  if (f.reversed) {
+    std::swap(f.w0, f.wf);
+    std::swap(f.m, f.n);
+    f.a0 = -std::exchange(f.af, -f.a0);
+    f.c = -f.c;
+  }
+  return f;
+}
+
+ExtremalMove in_order(const FarthestMoves& family, ExtremalMove move) noexcept {
+  move.side = family.side;
+  if (family.reversed) {
+    move.peak = -std::exchange(move.trough, -move.peak);
+    std::swap(move.peak_hold, move.trough_hold);
+  }
+  return move;
+}
+
+// With the hold from c = m^2 - B^2 + m h, a polynomial of B; its derivative is (wf + B^2 - m B/2)(2 B/m - 2).
+double distance_peak_held(const FarthestMoves& f, double b) noexcept {
+  return (b * b * (b * b + 2 * f.wf + f.m * f.m - 2 * f.m * b) - 4 * f.m * f.wf * b + f.sigma * (f.m * f.m + f.c)) /
+         (2 * f.m);
+}
+
+// The same backwards: c = A^2 - n^2 - n h.
+double distance_trough_held(const FarthestMoves& f, double a) noexcept {
+  return (a * a * (a * a + 2 * f.w0 + f.n * f.n + 2 * f.n * a) + 4 * f.n * f.w0 * a + f.sigma * (f.n * f.n - f.c)) /
+         (2 * f.n);
+}
+
+ChangeOfSpeed change_of_speed(double gain, double limit) noexcept {
+  gain = gain > 0.0 ? gain : 0.0;
+  if (gain <= limit * limit) return {std::sqrt(gain), 0.0};
+  return {limit, (gain - limit * limit) / limit};
+}
+
+}  // namespace stillcut

@@ -1,0 +1,279 @@
+// Which member of the family of extremal moves covers the distance asked: the piece of the family (what is held), then
+// the root of its polynomial by a safeguarded Newton iteration.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "rt/extremal_moves.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+struct ValueSlope {
+  double value = 0.0, slope = 0.0;
+};
+
+// The root of a function that is <= 0 at `low` and >= 0 at `high` (in that order, low > high allowed), from a guess
+// between: Newton's step where it stays between the bounds, else the middle.
+template <class Function>
+double bracketed_root(Function function, double low, double high, double x) noexcept {
+  for (int i = 0; i < 100; ++i) {
+    const auto [value, slope] = function(x);
+    (value < 0 ? low : high) = x;
+    const double step = value / slope;
+    double next = x - step;
+    if (std::abs(step) <= 2 * kEpsilon * std::abs(x)) return next;
+    if (!((next - low) * (next - high) <= 0)) {
+      next = (low + high) / 2;
+      if (next == low || next == high) return next;
+    }
+    x = next;
+  }
+  return x;
+}
+
+// Peak and trough free. With u = A - B: u^4 + 4 sigma u^2 - 4 D u - c^2 = 0, and A + B = c/u.
+ExtremalMove root_free(const FarthestMoves& f, double distance, double low, double high) noexcept {
+  const double four_sigma = 4 * f.sigma, four_d = 4 * distance, c_squared = f.c * f.c;
+  // No root lies above this bound; each term that can balance u^4 has its part.
+  double bound = std::max(2 * std::cbrt(std::max(distance, 0.0)), 1.1892071150027212 * std::sqrt(f.c));
+  if (f.sigma < 0) bound = std::max(1.1447142425533319 * bound, std::sqrt(-3 * four_sigma));
+  const double guess = std::max(std::min(bound, high), low);
+  const double u = bracketed_root(
+      [=](double x) {
+        const double square = x * x + four_sigma;
+        return ValueSlope{(square * x - four_d) * x - c_squared, 2 * x * (square + x * x) - four_d};
+      },
+      low, high, guess);
+  const double sum = u > 0 ? f.c / u : 0.0;
+  ExtremalMove move;
+  move.peak = std::min((sum + u) / 2, f.m);
+  move.trough = std::max((sum - u) / 2, -f.n);
+  return move;
+}
+
+ExtremalMove root_peak_held(const FarthestMoves& f, double distance, double low, double high) noexcept {
+  const double inverse = 1 / f.m;
+  const double b = bracketed_root(
+      [&](double x) {
+        return ValueSlope{distance_peak_held(f, x) - distance, (f.wf + x * x - f.m * x / 2) * (2 * x * inverse - 2)};
+      },
+      low, high, high);
+  ExtremalMove move;
+  move.peak = f.m;
+  move.trough = b;
+  move.peak_hold = std::max(0.0, (f.c - f.m * f.m + b * b) * inverse);
+  return move;
+}
+
+ExtremalMove root_trough_held(const FarthestMoves& f, double distance, double low, double high) noexcept {
+  const double inverse = 1 / f.n;
+  const double a = bracketed_root(
+      [&](double x) {
+        return ValueSlope{distance_trough_held(f, x) - distance, (f.w0 + x * x + f.n * x / 2) * (2 * x * inverse + 2)};
+      },
+      low, high, high);
+  ExtremalMove move;
+  move.peak = a;
+  move.trough = -f.n;
+  move.trough_hold = std::max(0.0, (a * a - f.n * f.n - f.c) * inverse);
+  return move;
+}
+
+// Both held: a quadratic for the speed between, v: (v^2 - w0^2)/m + m (w0 + v) + (v^2 - wf^2)/n + n (v + wf) = 2 D.
+ExtremalMove root_both_held(const FarthestMoves& f, double distance) noexcept {
+  const double p = 1 / f.m + 1 / f.n, q = (f.m + f.n) / 2;
+  const double r = f.w0 * (f.m - f.w0 / f.m) + f.wf * (f.n - f.wf / f.n) - 2 * distance;
+  const double root = std::sqrt(std::max(0.0, q * q - p * r));
+  const double speed = r < 0 ? -r / (q + root) : (root - q) / p;
+  ExtremalMove move;
+  move.peak = f.m;
+  move.trough = -f.n;
+  move.peak_hold = std::max(0.0, (speed - f.w0) / f.m - f.m);
+  move.trough_hold = std::max(0.0, (speed - f.wf) / f.n - f.n);
+  return move;
+}
+
+// Where a component of the family begins: with the shortest move there.
+struct Start {
+  double peak = 0.0, trough = 0.0;
+  bool trough_held = false;
+  double distance = 0.0;
+};
+
+// The first (shortest) member that goes at least as far as `distance`, where the members from `start` on pass that
+// distance exactly once. The last of them end in the cruise.
+ExtremalMove root_from(const FarthestMoves& f, const Start& start, double distance) noexcept {
+  const ChangeOfSpeed first = change_of_speed(f.v - f.w0, f.m), second = change_of_speed(f.v - f.wf, f.n);
+  const double to_cruise = ((f.w0 + f.v) * first.duration() + (f.v + f.wf) * second.duration()) / 2;
+  if (distance >= to_cruise) {
+    return {1.0, first.peak, -second.peak, first.hold, (distance - to_cruise) / f.v, second.hold};
+  }
+  const double m = f.m, n = f.n;
+  double b = start.trough, peak_free = start.peak;
+  bool trough_held = start.trough_held;
+  if (!trough_held && f.c < m * m) {
+    const double s = std::sqrt(m * m - f.c);  // the peak is free for |B| < s
+    if (b > s) {
+      if (distance <= distance_free(f, m, s)) return root_peak_held(f, distance, b, s);
+      b = s;
+      peak_free = m;
+    }
+    if (b > -std::min(s, n)) {
+      const bool peak_first = s <= n;
+      const double a_end = peak_first ? m : std::sqrt(n * n + f.c), b_end = peak_first ? -s : -n;
+      if (distance <= distance_free(f, a_end, b_end)) {
+        const double width = peak_free + b > 0 ? f.c / (peak_free + b) : peak_free - b;
+        return root_free(f, distance, width, a_end - b_end);
+      }
+      b = b_end;
+      peak_free = a_end;
+    }
+    trough_held = s > n;
+  }
+  if (trough_held) {
+    if (distance <= distance_trough_held(f, m)) return root_trough_held(f, distance, peak_free, m);
+  } else if (distance <= distance_peak_held(f, -n)) {
+    return root_peak_held(f, distance, b, -n);
+  }
+  return root_both_held(f, distance);
+}
+
+// Begins with a bulge: no trough below the target's acceleration.
+Start bulge_start(const FarthestMoves& f) noexcept {
+  Start start;
+  start.trough = f.af;
+  const double peak_squared = f.af * f.af + f.c;
+  if (peak_squared <= f.m * f.m) {
+    start.peak = std::sqrt(peak_squared);
+    start.distance = distance_free(f, start.peak, f.af);
+  } else {
+    start.peak = f.m;
+    start.distance = distance_peak_held(f, f.af);
+  }
+  return start;
+}
+
+// Begins with a dip below zero: no peak above the first acceleration, a0 > 0, a0^2 > c.
+Start dip_start(const FarthestMoves& f) noexcept {
+  Start start;
+  start.peak = f.a0;
+  const double depth = std::sqrt(std::max(0.0, f.a0 * f.a0 - f.c));
+  start.trough_held = depth > f.n;
+  start.trough = start.trough_held ? -f.n : -depth;
+  start.distance = start.trough_held ? distance_trough_held(f, f.a0) : distance_free(f, f.a0, -depth);
+  return start;
+}
+
+enum class Beginning { bulge, dip, island };
+
+// An island: the acceleration stays above zero. Between its longest move and the shortest one that dips below zero lie
+// durations in which the change of speed cannot be made at all.
+Beginning beginning(const FarthestMoves& f) noexcept {
+  if (!(f.a0 > 0 && f.a0 * f.a0 > f.c)) return Beginning::bulge;
+  const double gap = f.af * f.af + f.c - f.a0 * f.a0;
+  if (f.af > 0) return gap >= -f.gap_rounding ? Beginning::island : Beginning::dip;
+  return gap >= 0 ? Beginning::bulge : Beginning::dip;
+}
+
+// The farthest distance is not monotone where the acceleration stays well above zero and the speed is negative: it may
+// first rise to a maximum. The trough of that maximum, if it lies between the start's and `end`.
+std::optional<double> trough_at_maximum(const FarthestMoves& f, const Start& start, double end) noexcept {
+  const double free_below = f.c < f.m * f.m ? std::sqrt(f.m * f.m - f.c) : -f.n;
+  const double held = f.m * f.m / 16 - f.wf;
+  if (held > 0) {  // wf + B^2 - m B/2 = 0
+    const double b = f.m / 4 + std::sqrt(held);
+    if (b < start.trough && b > std::max(free_below, end)) return b;
+  }
+  const double discriminant = 4 * f.sigma * f.sigma - 3 * f.c * f.c;
+  if (f.sigma < 0 && discriminant > 0 && f.c > 0) {  // 3 u^4 + 4 sigma u^2 + c^2 = 0, the smaller root
+    const double u = f.c / std::sqrt(-2 * f.sigma + std::sqrt(discriminant));
+    const double b = (f.c / u - u) / 2;
+    if (b < std::min(start.trough, free_below) && b > end) return b;
+  }
+  return std::nullopt;
+}
+
+// Before that maximum the distance rises: the root there.
+ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, double distance, double end) noexcept {
+  const double s = f.c < f.m * f.m ? std::sqrt(f.m * f.m - f.c) : -f.n;
+  double b = start.trough, a = start.peak;
+  if (b > s) {
+    const double held_end = std::max(s, end);
+    if (end >= s || distance <= distance_peak_held(f, held_end)) return root_peak_held(f, distance, b, held_end);
+    b = s;
+    a = f.m;
+  }
+  const double a_end = std::sqrt(end * end + f.c);
+  return root_free(f, distance, a + b > 0 ? f.c / (a + b) : 0.0, a_end + end > 0 ? f.c / (a_end + end) : a_end - end);
+}
+
+// The fastest on a component that begins with `start`, where distance >= start.distance; nothing when it is an island
+// (ends at trough `end` > 0) that does not reach so far.
+std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, double distance, bool island) noexcept {
+  const double end = island ? std::sqrt(std::max(0.0, f.a0 * f.a0 - f.c)) : -f.n;
+  if (start.trough > 0) {
+    if (const auto top = trough_at_maximum(f, start, end)) {
+      const double a = std::sqrt(*top * *top + f.c);
+      const double highest = a >= f.m ? distance_peak_held(f, *top) : distance_free(f, a, *top);
+      if (distance <= highest) return root_before_maximum(f, start, distance, *top);
+      if (island && distance <= highest + f.distance_rounding) {
+        return root_before_maximum(f, start, highest, *top);
+      }
+    }
+  }
+  if (!island) return root_from(f, start, distance);
+  const double reach = distance_free(f, f.a0, end);
+  if (distance <= reach + f.distance_rounding) {
+    return root_before_maximum(f, start, std::min(distance, reach), std::min(end, start.trough));
+  }
+  return std::nullopt;
+}
+
+// Where the distance first shrinks as the duration grows, one beyond the start's by rounding only would cost a detour:
+// then the start itself is the answer. The rate is wf + B^2 - A B/2, the Hamiltonian of the extremal.
+bool is_start(const FarthestMoves& f, const Start& start, double distance) noexcept {
+  if (std::abs(distance - start.distance) > f.distance_rounding) return false;
+  const double speed = start.trough_held ? f.w0 + start.peak * start.peak : f.wf + start.trough * start.trough;
+  return speed - start.peak * start.trough / 2 < 0;
+}
+
+ExtremalMove start_move(const FarthestMoves& f, const Start& start) noexcept {
+  ExtremalMove move;
+  move.peak = start.peak;
+  move.trough = start.trough;
+  if (start.trough_held) {
+    move.trough_hold = std::max(0.0, (start.peak * start.peak - f.n * f.n - f.c) / f.n);
+  } else if (start.peak == f.m) {
+    move.peak_hold = std::max(0.0, (f.c - f.m * f.m + start.trough * start.trough) / f.m);
+  }
+  return move;
+}
+
+}  // namespace
+
+ExtremalMove fastest_move(const AxisMove& move) noexcept {
+  FarthestMoves f = farthest_moves(move, 1.0);
+  Beginning kind = beginning(f);
+  Start start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+  if (f.distance < start.distance) {  // the same start, mirrored
+    f = farthest_moves(move, -1.0);
+    kind = beginning(f);
+    start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+  }
+  if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
+  if (const auto found = root_on(f, start, f.distance, kind == Beginning::island)) return in_order(f, *found);
+  // Beyond the island: on to the moves that dip below zero.
+  start = dip_start(f);
+  if (f.distance < start.distance) {
+    f = farthest_moves(move, -f.side);
+    start = dip_start(f);
+  }
+  if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
+  return in_order(f, root_from(f, start, f.distance));
+}
+
+}  // namespace stillcut
