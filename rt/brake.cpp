@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stillcut {
 namespace {
@@ -36,12 +37,14 @@ Brake mirrored(Brake brake) noexcept {
 Brake brake_of(const AxisMove& s) noexcept {
   if (s.a0 > s.amax) return ease(s.v0, s.a0, s.vmax, s.vmin, s.amax, s.amin);
   if (s.a0 < s.amin) return mirrored(ease(-s.v0, -s.a0, -s.vmin, -s.vmax, -s.amin, -s.amax));
-  // The speed at which the acceleration can be back at zero.
-  const double v_end = s.v0 + s.a0 * std::abs(s.a0) / 2;
-  if ((s.v0 > s.vmax && v_end > s.vmin) || (s.a0 > 0 && v_end > s.vmax)) {
+  // How far beyond each limit the speed must be when the acceleration is back at zero; rounding is none.
+  const double ramp = s.a0 * std::abs(s.a0) / 2;
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(s.v0) + std::abs(ramp));
+  const double above = (s.v0 - s.vmax) + ramp, below = (s.vmin - s.v0) - ramp;
+  if ((s.v0 - s.vmax > rounding && below < 0) || (s.a0 > 0 && above > rounding)) {
     return slow_down(s.v0, s.a0, s.vmax, s.vmin, s.amin);
   }
-  if ((s.v0 < s.vmin && v_end < s.vmax) || (s.a0 < 0 && v_end < s.vmin)) {
+  if ((s.vmin - s.v0 > rounding && above < 0) || (s.a0 < 0 && below > rounding)) {
     return mirrored(slow_down(-s.v0, -s.a0, -s.vmin, -s.vmax, -s.amax));
   }
   return {};

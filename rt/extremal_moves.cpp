@@ -1,5 +1,6 @@
 #include "rt/extremal_moves.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,7 +19,7 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   f.wf = vf - af_squared / 2;
   f.c = (vf - v0) + (f.a0 - f.af) * (f.a0 + f.af) / 2;
   f.sigma = f.w0 + f.wf;
-  f.gap_rounding = 4 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
+  const double gap_rounding = 4 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
   // Carrying the ends to the instants without acceleration: a ramp from 0 to a covers w a + a^3/6.
   const double from_start = f.a0 * (f.w0 + a0_squared / 6), to_end = f.af * (f.wf + af_squared / 6);
   f.distance = side * move.distance + from_start - to_end;
@@ -29,9 +30,12 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   f.m = up ? move.amax : -move.amin;
   f.n = up ? -move.amin : move.amax;
   f.v = up ? move.vmax : -move.vmin;
-  // A gap within rounding is none where a plain ramp between accelerations of one sign closes it; otherwise a move
-  // planned again on its last ramp would make a detour.
-  if (f.a0 * f.af > 0 && std::abs(f.c) <= f.gap_rounding) {
+  f.gain0 = (f.v - v0) + a0_squared / 2;
+  f.gainf = (f.v - vf) + af_squared / 2;
+  // Where a plain ramp between accelerations of one sign closes the gap in velocity but for rounding, it closes it;
+  // otherwise a move planned again on such a ramp would make a detour.
+  const bool one_sign = f.a0 * f.af > 0;
+  if (one_sign && f.af >= f.a0 && std::abs(f.c) <= gap_rounding) {
     f.c = 0.0;
     f.reversed = f.a0 < 0;
   } else {
@@ -39,9 +43,14 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   }
   if (f.reversed) {
     std::swap(f.w0, f.wf);
+    std::swap(f.gain0, f.gainf);
     std::swap(f.m, f.n);
     f.a0 = -std::exchange(f.af, -f.a0);
     f.c = -f.c;
+  }
+  if (one_sign && f.a0 > f.af && f.af > 0) {
+    const double plain = (f.a0 - f.af) * (f.a0 + f.af);
+    if (std::abs(f.c - plain) <= gap_rounding) f.c = plain;
   }
   return f;
 }
@@ -67,10 +76,9 @@ double distance_trough_held(const FarthestMoves& f, double a) noexcept {
          (2 * f.n);
 }
 
-ChangeOfSpeed change_of_speed(double gain, double limit) noexcept {
-  gain = gain > 0.0 ? gain : 0.0;
-  if (gain <= limit * limit) return {std::sqrt(gain), 0.0};
-  return {limit, (gain - limit * limit) / limit};
+ChangeOfSpeed change_of_speed(double gain, double limit, double least) noexcept {
+  if (gain > limit * limit) return {limit, (gain - limit * limit) / limit};
+  return {std::max({std::sqrt(std::max(gain, 0.0)), least, 0.0}), 0.0};
 }
 
 }  // namespace stillcut

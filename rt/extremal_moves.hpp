@@ -38,9 +38,9 @@ struct FarthestMoves {
   double w0 = 0.0, wf = 0.0, c = 0.0, sigma = 0.0;  // sigma = w0 + wf
   double a0 = 0.0, af = 0.0;
   double m = 0.0, n = 0.0, v = 0.0;  // peak <= m, trough >= -n, speed <= v
+  double gain0 = 0.0, gainf = 0.0;   // v - w0 and v - wf, s^2
   double distance = 0.0;             // of the move between the two instants without acceleration
   double distance_rounding = 0.0;
-  double gap_rounding = 0.0;  // of c, s^2
   double side = 1.0;
   bool reversed = false;
 };
@@ -57,16 +57,17 @@ struct FarthestMoves {
 [[nodiscard]] double distance_trough_held(const FarthestMoves& family, double peak) noexcept;
 // ... whose peak and trough are free: (A - B)(sigma - A B).
 [[nodiscard]] inline double distance_free(const FarthestMoves& family, double peak, double trough) noexcept {
-  const double width = peak + trough > 0.0 ? family.c / (peak + trough) : peak - trough;
+  const double width = trough > 0.0 ? family.c / (peak + trough) : peak - trough;
   return width * (family.sigma - peak * trough);
 }
 
-// The part of a move between w and the cruising speed v, or back: a trapeze of acceleration, at most `limit` high.
+// The part of a move between w and the cruising speed, or back: a trapeze of acceleration, at most `limit` high and
+// `least` at least, which is what the ends ask for where `gain` is only rounding.
 struct ChangeOfSpeed {
   double peak = 0.0, hold = 0.0;
   [[nodiscard]] double duration() const noexcept { return 2.0 * peak + hold; }
 };
-[[nodiscard]] ChangeOfSpeed change_of_speed(double gain, double limit) noexcept;
+[[nodiscard]] ChangeOfSpeed change_of_speed(double gain, double limit, double least) noexcept;
 
 // The fastest move over the distance asked. The ends must be inside the limits, and be able to stay inside (before and
 // after).

@@ -83,17 +83,18 @@ ExtremalMove root_trough_held(const FarthestMoves& f, double distance, double lo
   return move;
 }
 
-// Both held: a quadratic for the speed between, v: (v^2 - w0^2)/m + m (w0 + v) + (v^2 - wf^2)/n + n (v + wf) = 2 D.
+// Both held: a quadratic for the gain g from w0 to the speed between them, with p = 1/m + 1/n:
+// p g^2 + (2 w0 p + m + n) g + 2 m w0 + sigma (n - c/n) - 2 D = 0.
 ExtremalMove root_both_held(const FarthestMoves& f, double distance) noexcept {
-  const double p = 1 / f.m + 1 / f.n, q = (f.m + f.n) / 2;
-  const double r = f.w0 * (f.m - f.w0 / f.m) + f.wf * (f.n - f.wf / f.n) - 2 * distance;
+  const double p = 1 / f.m + 1 / f.n, q = f.w0 * p + (f.m + f.n) / 2;
+  const double r = 2 * (f.m * f.w0 - distance) + f.sigma * (f.n - f.c / f.n);
   const double root = std::sqrt(std::max(0.0, q * q - p * r));
-  const double speed = r < 0 ? -r / (q + root) : (root - q) / p;
+  const double gain = q > 0 ? -r / (q + root) : (root - q) / p;
   ExtremalMove move;
   move.peak = f.m;
   move.trough = -f.n;
-  move.peak_hold = std::max(0.0, (speed - f.w0) / f.m - f.m);
-  move.trough_hold = std::max(0.0, (speed - f.wf) / f.n - f.n);
+  move.peak_hold = std::max(0.0, gain / f.m - f.m);
+  move.trough_hold = std::max(0.0, (gain - f.c) / f.n - f.n);
   return move;
 }
 
@@ -107,7 +108,7 @@ struct Start {
 // The first (shortest) member that goes at least as far as `distance`, where the members from `start` on pass that
 // distance exactly once. The last of them end in the cruise.
 ExtremalMove root_from(const FarthestMoves& f, const Start& start, double distance) noexcept {
-  const ChangeOfSpeed first = change_of_speed(f.v - f.w0, f.m), second = change_of_speed(f.v - f.wf, f.n);
+  const ChangeOfSpeed first = change_of_speed(f.gain0, f.m, f.a0), second = change_of_speed(f.gainf, f.n, -f.af);
   const double to_cruise = ((f.w0 + f.v) * first.duration() + (f.v + f.wf) * second.duration()) / 2;
   if (distance >= to_cruise) {
     return {1.0, first.peak, -second.peak, first.hold, (distance - to_cruise) / f.v, second.hold};
@@ -126,7 +127,7 @@ ExtremalMove root_from(const FarthestMoves& f, const Start& start, double distan
       const bool peak_first = s <= n;
       const double a_end = peak_first ? m : std::sqrt(n * n + f.c), b_end = peak_first ? -s : -n;
       if (distance <= distance_free(f, a_end, b_end)) {
-        const double width = peak_free + b > 0 ? f.c / (peak_free + b) : peak_free - b;
+        const double width = b > 0 ? f.c / (peak_free + b) : peak_free - b;
         return root_free(f, distance, width, a_end - b_end);
       }
       b = b_end;
@@ -148,7 +149,7 @@ Start bulge_start(const FarthestMoves& f) noexcept {
   start.trough = f.af;
   const double peak_squared = f.af * f.af + f.c;
   if (peak_squared <= f.m * f.m) {
-    start.peak = std::sqrt(peak_squared);
+    start.peak = std::max(std::sqrt(std::max(0.0, peak_squared)), f.a0);
     start.distance = distance_free(f, start.peak, f.af);
   } else {
     start.peak = f.m;
@@ -174,9 +175,8 @@ enum class Beginning { bulge, dip, island };
 // durations in which the change of speed cannot be made at all.
 Beginning beginning(const FarthestMoves& f) noexcept {
   if (!(f.a0 > 0 && f.a0 * f.a0 > f.c)) return Beginning::bulge;
-  const double gap = f.af * f.af + f.c - f.a0 * f.a0;
-  if (f.af > 0) return gap >= -f.gap_rounding ? Beginning::island : Beginning::dip;
-  return gap >= 0 ? Beginning::bulge : Beginning::dip;
+  if (f.c < (f.a0 - f.af) * (f.a0 + f.af)) return Beginning::dip;
+  return f.af > 0 ? Beginning::island : Beginning::bulge;
 }
 
 // The farthest distance is not monotone where the acceleration stays well above zero and the speed is negative: it may
@@ -197,6 +197,18 @@ std::optional<double> trough_at_maximum(const FarthestMoves& f, const Start& sta
   return std::nullopt;
 }
 
+ExtremalMove start_move(const FarthestMoves& f, const Start& start) noexcept {
+  ExtremalMove move;
+  move.peak = start.peak;
+  move.trough = start.trough;
+  if (start.trough_held) {
+    move.trough_hold = std::max(0.0, (start.peak * start.peak - f.n * f.n - f.c) / f.n);
+  } else if (start.peak == f.m) {
+    move.peak_hold = std::max(0.0, (f.c - f.m * f.m + start.trough * start.trough) / f.m);
+  }
+  return move;
+}
+
 // Before that maximum the distance rises: the root there.
 ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, double distance, double end) noexcept {
   const double s = f.c < f.m * f.m ? std::sqrt(f.m * f.m - f.c) : -f.n;
@@ -208,7 +220,8 @@ ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, dou
     a = f.m;
   }
   const double a_end = std::sqrt(end * end + f.c);
-  return root_free(f, distance, a + b > 0 ? f.c / (a + b) : 0.0, a_end + end > 0 ? f.c / (a_end + end) : a_end - end);
+  const double low = f.c / (a + b), high = f.c / (a_end + end);
+  return low < high ? root_free(f, distance, low, high) : start_move(f, start);
 }
 
 // The fastest on a component that begins with `start`, where distance >= start.distance; nothing when it is an island
@@ -239,18 +252,6 @@ bool is_start(const FarthestMoves& f, const Start& start, double distance) noexc
   if (std::abs(distance - start.distance) > f.distance_rounding) return false;
   const double speed = start.trough_held ? f.w0 + start.peak * start.peak : f.wf + start.trough * start.trough;
   return speed - start.peak * start.trough / 2 < 0;
-}
-
-ExtremalMove start_move(const FarthestMoves& f, const Start& start) noexcept {
-  ExtremalMove move;
-  move.peak = start.peak;
-  move.trough = start.trough;
-  if (start.trough_held) {
-    move.trough_hold = std::max(0.0, (start.peak * start.peak - f.n * f.n - f.c) / f.n);
-  } else if (start.peak == f.m) {
-    move.peak_hold = std::max(0.0, (f.c - f.m * f.m + start.trough * start.trough) / f.m);
-  }
-  return move;
 }
 
 }  // namespace

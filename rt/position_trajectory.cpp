@@ -51,6 +51,7 @@ TrajectoryError check(const MotionState& start, const MotionState& target, const
 class TrajectoryBuilder {
  public:
   TrajectoryBuilder(PositionTrajectory& trajectory, const MotionState& start) noexcept : t_{trajectory} {
+    t_.phases_[0].start = start;
     t_.end_ = start;
   }
   // Nothing is added for a phase without duration.
@@ -70,7 +71,7 @@ class TrajectoryBuilder {
 };
 
 MotionState PositionTrajectory::at(double t) const noexcept {
-  if (!(t > 0) && count_ > 0) return phases_[0].start;
+  if (!(t > 0)) return phases_[0].start;
   if (t >= duration_) return moved(end_, 0.0, t - duration_);
   for (std::size_t i = 0; i + 1 < count_; ++i) {
     if (t < phases_[i].duration) return moved(phases_[i].start, phases_[i].jerk, t);
