@@ -14,22 +14,43 @@ bool all_finite(const MotionState& s) noexcept {
   return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration);
 }
 
+AxisMove scaled(const AxisTask& task) noexcept {
+  const double per_jerk = 1 / task.limits.jerk;
+  AxisMove move;
+  move.v0 = task.start.velocity * per_jerk;
+  move.a0 = task.start.acceleration * per_jerk;
+  move.vf = task.target.velocity * per_jerk;
+  move.af = task.target.acceleration * per_jerk;
+  move.vmax = task.limits.velocity_max * per_jerk;
+  move.vmin = task.limits.velocity_min * per_jerk;
+  move.amax = task.limits.acceleration_max * per_jerk;
+  move.amin = task.limits.acceleration_min * per_jerk;
+  return move;
+}
+
 }  // namespace
 
-TrajectoryError check_task(const AxisTask& task) noexcept {
+TrajectoryError check_change(const AxisTask& task) noexcept {
   const auto& [start, target, limits] = task;
   if (!all_finite(start) || !all_finite(target)) return TrajectoryError::not_finite;
-  for (double x : {limits.velocity_max, limits.velocity_min, limits.acceleration_max, limits.acceleration_min}) {
-    if (!std::isfinite(x)) return TrajectoryError::not_finite;
+  if (!std::isfinite(limits.acceleration_max) || !std::isfinite(limits.acceleration_min) ||
+      !std::isfinite(limits.jerk)) {
+    return TrajectoryError::not_finite;
   }
-  if (!std::isfinite(limits.jerk)) return TrajectoryError::not_finite;
-  if (!(limits.velocity_max > 0 && limits.velocity_min < 0 && limits.acceleration_max > 0 &&
-        limits.acceleration_min < 0 && limits.jerk > 0)) {
+  if (!(limits.acceleration_max > 0 && limits.acceleration_min < 0 && limits.jerk > 0)) {
     return TrajectoryError::limit_not_positive;
   }
   if (target.acceleration > limits.acceleration_max || target.acceleration < limits.acceleration_min) {
     return TrajectoryError::target_beyond_limit;
   }
+  return TrajectoryError::none;
+}
+
+TrajectoryError check_task(const AxisTask& task) noexcept {
+  const auto& [start, target, limits] = task;
+  if (!std::isfinite(limits.velocity_max) || !std::isfinite(limits.velocity_min)) return TrajectoryError::not_finite;
+  if (const TrajectoryError error = check_change(task); error != TrajectoryError::none) return error;
+  if (!(limits.velocity_max > 0 && limits.velocity_min < 0)) return TrajectoryError::limit_not_positive;
   // The speed just before the target, where the acceleration left zero, must be inside its limits too.
   const double ramp = target.acceleration * target.acceleration / (2 * limits.jerk);
   const double slack = 8 * std::numeric_limits<double>::epsilon() * (std::abs(target.velocity) + ramp);
@@ -44,16 +65,7 @@ TrajectoryError check_task(const AxisTask& task) noexcept {
 AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
   const auto& [start, target, limits] = task;
   const double j = limits.jerk, per_jerk = 1 / j;
-  AxisMove move;
-  move.v0 = start.velocity * per_jerk;
-  move.a0 = start.acceleration * per_jerk;
-  move.vf = target.velocity * per_jerk;
-  move.af = target.acceleration * per_jerk;
-  move.vmax = limits.velocity_max * per_jerk;
-  move.vmin = limits.velocity_min * per_jerk;
-  move.amax = limits.acceleration_max * per_jerk;
-  move.amin = limits.acceleration_min * per_jerk;
-
+  AxisMove move = scaled(task);
   trajectory.begin(start);
   const Brake brake = brake_of(move);
   if (brake.jerk != 0.0) {
@@ -70,9 +82,22 @@ AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
   return move;
 }
 
-bool append_move(const AxisTask& task, const AxisMove& rest, const ExtremalMove& move,
-                 AxisTrajectory& trajectory) noexcept {
-  const double up = move.side * task.limits.jerk, a_peak = move.peak * up, a_trough = move.trough * up;
+AxisMove begin_change(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
+  AxisMove move = scaled(task);
+  trajectory.begin(task.start);
+  const double a = std::clamp(move.a0, move.amin, move.amax);
+  if (a != move.a0) {
+    const double j = task.limits.jerk;
+    trajectory.add(std::abs(move.a0 - a), std::copysign(j, a - move.a0), a * j);
+    trajectory.end_brake();
+    move.a0 = a;
+    move.v0 = trajectory.reached().velocity / j;
+  }
+  return move;
+}
+
+void append_move(double jerk, const AxisMove& rest, const ExtremalMove& move, AxisTrajectory& trajectory) noexcept {
+  const double up = move.side * jerk, a_peak = move.peak * up, a_trough = move.trough * up;
   trajectory.add(move.peak - move.side * rest.a0, up, a_peak);
   trajectory.add(move.peak_hold, 0.0, a_peak);
   if (move.cruise > 0) {
@@ -83,13 +108,12 @@ bool append_move(const AxisTask& task, const AxisMove& rest, const ExtremalMove&
     trajectory.add(move.peak - move.trough, -up, a_trough);
   }
   trajectory.add(move.trough_hold, 0.0, a_trough);
-  trajectory.add(move.side * rest.af - move.trough, up, task.target.acceleration);
-  return finish_at_target(task, trajectory);
+  trajectory.add(move.side * rest.af - move.trough, up, rest.af * jerk);
 }
 
-bool finish_at_target(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
+bool finish_at(const MotionState& target, AxisTrajectory& trajectory) noexcept {
   const bool finite = std::isfinite(trajectory.duration()) && all_finite(trajectory.reached());
-  trajectory.finish(task.target);
+  trajectory.finish(target);
   return finite;
 }
 
@@ -99,7 +123,8 @@ PositionPlan plan_position(const MotionState& start, const MotionState& target, 
   plan.error = check_task(task);
   if (plan.error != TrajectoryError::none) return plan;
   const AxisMove move = begin_move(task, plan.trajectory);
-  if (!append_move(task, move, fastest_move(move), plan.trajectory)) plan = {TrajectoryError::out_of_range, {}};
+  append_move(limits.jerk, move, fastest_move(move), plan.trajectory);
+  if (!finish_at(target, plan.trajectory)) plan = {TrajectoryError::out_of_range, {}};
   return plan;
 }
 

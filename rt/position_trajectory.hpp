@@ -31,10 +31,13 @@ struct PositionPlan {
 [[nodiscard]] TrajectoryError check_task(const AxisTask& task) noexcept;
 // begins the trajectory with its brake phases and returns what is then left to do, divided by the jerk limit;
 [[nodiscard]] AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept;
-// appends that move and finishes the trajectory; false: the inputs are too far apart in scale.
-[[nodiscard]] bool append_move(const AxisTask& task, const AxisMove& rest, const ExtremalMove& move,
-                               AxisTrajectory& trajectory) noexcept;
-// Ends it at the target; false: the inputs are too far apart in scale.
-[[nodiscard]] bool finish_at_target(const AxisTask& task, AxisTrajectory& trajectory) noexcept;
+// appends an extremal move;
+void append_move(double jerk, const AxisMove& rest, const ExtremalMove& move, AxisTrajectory& trajectory) noexcept;
+// ends it at the target; false: the inputs are too far apart in scale.
+[[nodiscard]] bool finish_at(const MotionState& target, AxisTrajectory& trajectory) noexcept;
+
+// Steps of the velocity interface: the task's target position and limits of velocity do not count.
+[[nodiscard]] TrajectoryError check_change(const AxisTask& task) noexcept;
+[[nodiscard]] AxisMove begin_change(const AxisTask& task, AxisTrajectory& trajectory) noexcept;
 
 }  // namespace stillcut

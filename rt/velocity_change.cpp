@@ -1,0 +1,71 @@
+#include "rt/velocity_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillcut {
+namespace {
+
+struct Bulge {
+  double b0 = 0.0, bf = 0.0, limit = 0.0, gain = 0.0;  // mirrored by the side
+};
+
+Bulge bulge_of(const AxisMove& move, double side) noexcept {
+  return {side * move.a0, side * move.af, side > 0 ? move.amax : -move.amin, side * (move.vf - move.v0)};
+}
+
+ExtremalMove as_move(const Bulge& b, double side, double peak, double hold) noexcept {
+  return {side, peak, b.bf, hold, 0.0, 0.0};
+}
+
+// The largest gain in this time and how much it exceeds what is asked: A^2 - (b0^2 + bf^2)/2 + m h.
+struct Largest {
+  ExtremalMove move;
+  double excess = 0.0;
+};
+Largest largest(const AxisMove& move, double side, double duration) noexcept {
+  const Bulge b = bulge_of(move, side);
+  const double free_peak = std::max({(duration + b.b0 + b.bf) / 2, b.b0, b.bf});
+  const double peak = std::min(free_peak, b.limit), hold = 2 * (free_peak - peak);
+  const double gain = peak * peak - (b.b0 * b.b0 + b.bf * b.bf) / 2 + peak * hold;
+  return {as_move(b, side, peak, hold), gain - b.gain};
+}
+
+}  // namespace
+
+ExtremalMove fastest_change(const AxisMove& move) noexcept {
+  const double gain = move.vf - move.v0, a0 = move.a0, af = move.af;
+  double gap = gain - (a0 + af) / 2 * std::abs(af - a0);
+  // As in plan_velocity: a gap within rounding is none where it would cost a detour.
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() *
+                          (std::abs(move.v0) + std::abs(move.vf) + (a0 == af ? 0.0 : a0 * a0 + af * af));
+  if (a0 * af > 0 && gap * a0 < 0 && std::abs(gap) <= rounding) gap = 0.0;
+  const double side = std::copysign(1.0, gap);
+  const Bulge b = bulge_of(move, side);
+  const double high = std::max(b.b0, b.bf), missing = std::abs(gap);
+  const double peak = std::max(std::sqrt(missing + high * high), high);
+  if (missing == 0.0) return as_move(b, side, high, 0.0);
+  if (peak <= b.limit) return as_move(b, side, peak, 0.0);
+  return as_move(b, side, b.limit, std::max(0.0, (missing - (b.limit - high) * (b.limit + high)) / b.limit));
+}
+
+std::optional<StretchedMove> change_of_duration(const AxisMove& move, double duration) noexcept {
+  const Largest up = largest(move, 1.0, duration), down = largest(move, -1.0, duration);
+  const double slack = 16 * std::numeric_limits<double>::epsilon() *
+                       (std::abs(move.v0) + std::abs(move.vf) + move.a0 * move.a0 + move.af * move.af +
+                        duration * std::min(duration, std::max(move.amax, -move.amin)));
+  if (up.excess < -slack || down.excess < -slack) return std::nullopt;
+  const double above = std::max(up.excess, 0.0), below = std::max(down.excess, 0.0);
+  return StretchedMove{up.move, down.move, above + below > 0 ? below / (above + below) : 1.0};
+}
+
+double next_possible_change(const AxisMove& move, double duration) noexcept {
+  const double side = largest(move, 1.0, duration).excess < 0 ? 1.0 : -1.0;
+  const Bulge b = bulge_of(move, side);
+  const double squared = std::max(0.0, b.gain + (b.b0 * b.b0 + b.bf * b.bf) / 2), peak = std::sqrt(squared);
+  if (peak <= b.limit) return 2 * peak - b.b0 - b.bf;
+  return 2 * b.limit - b.b0 - b.bf + (squared - b.limit * b.limit) / b.limit;
+}
+
+}  // namespace stillcut
