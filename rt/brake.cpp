@@ -39,7 +39,7 @@ Brake brake_of(const AxisMove& s) noexcept {
   if (s.a0 < s.amin) return mirrored(ease(-s.v0, -s.a0, -s.vmin, -s.vmax, -s.amin, -s.amax));
   // How far beyond each limit the speed must be when the acceleration is back at zero; rounding is none.
   const double ramp = s.a0 * std::abs(s.a0) / 2;
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(s.v0) + std::abs(ramp));
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() * (std::abs(s.v0) + std::abs(ramp));
   const double above = (s.v0 - s.vmax) + ramp, below = (s.vmin - s.v0) - ramp;
   if ((s.v0 - s.vmax > rounding && below < 0) || (s.a0 > 0 && above > rounding)) {
     return slow_down(s.v0, s.a0, s.vmax, s.vmin, s.amin);

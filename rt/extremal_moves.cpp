@@ -19,13 +19,14 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   f.wf = vf - af_squared / 2;
   f.c = (vf - v0) + (f.a0 - f.af) * (f.a0 + f.af) / 2;
   f.sigma = f.w0 + f.wf;
-  const double gap_rounding = 4 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
+  const double gap_rounding = 8 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
+  f.velocity_rounding = 2 * kEpsilon * (std::abs(v0) + std::abs(vf));
   // Carrying the ends to the instants without acceleration: a ramp from 0 to a covers w a + a^3/6.
   const double from_start = f.a0 * (f.w0 + a0_squared / 6), to_end = f.af * (f.wf + af_squared / 6);
   f.distance = side * move.distance + from_start - to_end;
   f.distance_rounding =
       move.distance_rounding +
-      4 * kEpsilon * (std::abs(f.a0) * (std::abs(v0) + a0_squared) + std::abs(f.af) * (std::abs(vf) + af_squared));
+      8 * kEpsilon * (std::abs(f.a0) * (std::abs(v0) + a0_squared) + std::abs(f.af) * (std::abs(vf) + af_squared));
   const bool up = side > 0;
   f.m = up ? move.amax : -move.amin;
   f.n = up ? -move.amin : move.amax;
@@ -34,7 +35,7 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   f.gainf = (f.v - vf) + af_squared / 2;
   // Where a plain ramp between accelerations of one sign closes the gap in velocity but for rounding, it closes it;
   // otherwise a move planned again on such a ramp would make a detour.
-  const bool one_sign = f.a0 * f.af > 0;
+  const bool one_sign = f.a0 * f.af >= 0;
   if (one_sign && f.af >= f.a0 && std::abs(f.c) <= gap_rounding) {
     f.c = 0.0;
     f.reversed = f.a0 < 0;
@@ -48,7 +49,7 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
     f.a0 = -std::exchange(f.af, -f.a0);
     f.c = -f.c;
   }
-  if (one_sign && f.a0 > f.af && f.af > 0) {
+  if (one_sign && f.a0 > f.af && f.af >= 0) {
     const double plain = (f.a0 - f.af) * (f.a0 + f.af);
     if (std::abs(f.c - plain) <= gap_rounding) f.c = plain;
   }

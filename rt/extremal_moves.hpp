@@ -12,6 +12,8 @@
 // s^2, distances in s^3. Pure functions, noexcept, allocate nothing.
 #pragma once
 
+#include <optional>
+
 namespace stillcut {
 
 // What is asked of one axis.
@@ -40,7 +42,7 @@ struct FarthestMoves {
   double m = 0.0, n = 0.0, v = 0.0;  // peak <= m, trough >= -n, speed <= v
   double gain0 = 0.0, gainf = 0.0;   // v - w0 and v - wf, s^2
   double distance = 0.0;             // of the move between the two instants without acceleration
-  double distance_rounding = 0.0;
+  double distance_rounding = 0.0, velocity_rounding = 0.0;
   double side = 1.0;
   bool reversed = false;
 };
@@ -72,6 +74,10 @@ struct ChangeOfSpeed {
 // The fastest move over the distance asked. The ends must be inside the limits, and be able to stay inside (before and
 // after).
 [[nodiscard]] ExtremalMove fastest_move(const AxisMove& move) noexcept;
+
+// The fastest move whose acceleration keeps the sign it has at both ends, if there is one: it passes no speed that is
+// not between those of the ends.
+[[nodiscard]] std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexcept;
 
 [[nodiscard]] inline double duration_of(const ExtremalMove& move, double a0, double af) noexcept {
   return (move.peak - move.side * a0) + move.peak_hold + (move.peak - move.trough) + move.cruise + move.trough_hold +

@@ -89,7 +89,9 @@ ExtremalMove root_both_held(const FarthestMoves& f, double distance) noexcept {
   const double p = 1 / f.m + 1 / f.n, q = f.w0 * p + (f.m + f.n) / 2;
   const double r = 2 * (f.m * f.w0 - distance) + f.sigma * (f.n - f.c / f.n);
   const double root = std::sqrt(std::max(0.0, q * q - p * r));
-  const double gain = q > 0 ? -r / (q + root) : (root - q) / p;
+  // At least what the ramps between the limits gain, or rounding would take it from one hold only.
+  const double least = std::max(f.m * f.m, f.c + f.n * f.n);
+  const double gain = std::max(q > 0 ? -r / (q + root) : (root - q) / p, least);
   ExtremalMove move;
   move.peak = f.m;
   move.trough = -f.n;
@@ -224,6 +226,17 @@ ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, dou
   return low < high ? root_free(f, distance, low, high) : start_move(f, start);
 }
 
+// How far rounding of the positions, accelerations and velocities may move the distance of the start. That of the
+// velocities moves its duration first; more than a trace of the duration is no rounding.
+double rounding_at(const FarthestMoves& f, const Start& start) noexcept {
+  constexpr double kTrace = 1e-10, kTiny = std::numeric_limits<double>::min();
+  const double peak = std::max(start.peak, kTiny);
+  const double duration = f.af - f.a0 + 2 * (start.peak - start.trough) + f.c / peak;  // at least
+  const double time = std::min(f.velocity_rounding / peak, kTrace * duration);
+  return f.distance_rounding + std::abs(f.sigma) * time + 16 * kEpsilon * std::abs(start.distance) +
+         f.velocity_rounding * duration;
+}
+
 // The fastest on a component that begins with `start`, where distance >= start.distance; nothing when it is an island
 // (ends at trough `end` > 0) that does not reach so far.
 std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, double distance, bool island) noexcept {
@@ -233,28 +246,42 @@ std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, 
       const double a = std::sqrt(*top * *top + f.c);
       const double highest = a >= f.m ? distance_peak_held(f, *top) : distance_free(f, a, *top);
       if (distance <= highest) return root_before_maximum(f, start, distance, *top);
-      if (island && distance <= highest + f.distance_rounding) {
+      if (island && distance <= highest + rounding_at(f, start)) {
         return root_before_maximum(f, start, highest, *top);
       }
     }
   }
   if (!island) return root_from(f, start, distance);
   const double reach = distance_free(f, f.a0, end);
-  if (distance <= reach + f.distance_rounding) {
+  if (distance <= reach + rounding_at(f, start)) {
     return root_before_maximum(f, start, std::min(distance, reach), std::min(end, start.trough));
   }
   return std::nullopt;
 }
 
-// Where the distance first shrinks as the duration grows, one beyond the start's by rounding only would cost a detour:
-// then the start itself is the answer. The rate is wf + B^2 - A B/2, the Hamiltonian of the extremal.
+// Where the distance first shrinks as the duration grows (or may soon), one beyond the start's by rounding only would
+// cost a detour: then the start itself is the answer. The rate is wf + B^2 - A B/2, the Hamiltonian of the extremal; it
+// falls while B > A/4.
 bool is_start(const FarthestMoves& f, const Start& start, double distance) noexcept {
-  if (std::abs(distance - start.distance) > f.distance_rounding) return false;
+  if (std::abs(distance - start.distance) > rounding_at(f, start)) return false;
   const double speed = start.trough_held ? f.w0 + start.peak * start.peak : f.wf + start.trough * start.trough;
-  return speed - start.peak * start.trough / 2 < 0;
+  return speed - start.peak * start.trough / 2 < 0 || start.trough > start.peak / 4;
 }
 
 }  // namespace
+
+std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexcept {
+  for (double side : {1.0, -1.0}) {
+    const FarthestMoves f = farthest_moves(move, side);
+    if (beginning(f) != Beginning::island) return std::nullopt;
+    const Start start = bulge_start(f);
+    if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
+    if (f.distance < start.distance) continue;
+    const auto found = root_on(f, start, f.distance, true);
+    return found ? std::optional(in_order(f, *found)) : std::nullopt;
+  }
+  return std::nullopt;
+}
 
 ExtremalMove fastest_move(const AxisMove& move) noexcept {
   FarthestMoves f = farthest_moves(move, 1.0);

@@ -28,6 +28,13 @@ AxisMove scaled(const AxisTask& task) noexcept {
   return move;
 }
 
+void set_distance(const AxisTask& task, double from, AxisMove& move) noexcept {
+  const double to = task.target.position;
+  move.distance = (to - from) / task.limits.jerk;
+  move.distance_rounding =
+      4 * std::numeric_limits<double>::epsilon() * (std::abs(to) + std::abs(from)) / task.limits.jerk;
+}
+
 }  // namespace
 
 TrajectoryError check_change(const AxisTask& task) noexcept {
@@ -63,23 +70,37 @@ TrajectoryError check_task(const AxisTask& task) noexcept {
 }
 
 AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
-  const auto& [start, target, limits] = task;
-  const double j = limits.jerk, per_jerk = 1 / j;
   AxisMove move = scaled(task);
-  trajectory.begin(start);
-  const Brake brake = brake_of(move);
-  if (brake.jerk != 0.0) {
+  trajectory.begin(task.start);
+  if (const Brake brake = brake_of(move); brake.jerk != 0.0) {
+    const double j = task.limits.jerk;
     move.a0 = std::clamp(move.a0 + brake.jerk * brake.ramp, move.amin, move.amax);
     trajectory.add(brake.ramp, brake.jerk * j, move.a0 * j);
     trajectory.add(brake.hold, 0.0, move.a0 * j);
     trajectory.end_brake();
-    move.v0 = trajectory.reached().velocity * per_jerk;
+    move.v0 = trajectory.reached().velocity / j;
   }
-  const double from = trajectory.reached().position;
-  move.distance = (target.position - from) * per_jerk;
-  move.distance_rounding =
-      2 * std::numeric_limits<double>::epsilon() * (std::abs(target.position) + std::abs(from)) * per_jerk;
+  set_distance(task, trajectory.reached().position, move);
   return move;
+}
+
+bool begin_without_brake(const AxisTask& task, AxisTrajectory& trajectory, AxisMove& move,
+                         ExtremalMove& found) noexcept {
+  const auto& [start, target, limits] = task;
+  if (start.velocity > limits.velocity_max || start.velocity < limits.velocity_min) return false;
+  if (!(start.acceleration * target.acceleration > 0)) return false;
+  AxisMove unbraked = scaled(task);
+  // An acceleration beyond its limit by rounding, as one reached in flight may be, is at it.
+  const double a = std::clamp(unbraked.a0, unbraked.amin, unbraked.amax);
+  if (std::abs(unbraked.a0 - a) > 8 * std::numeric_limits<double>::epsilon() * std::abs(a)) return false;
+  unbraked.a0 = a;
+  set_distance(task, start.position, unbraked);
+  const auto extremal = fastest_move_of_one_sign(unbraked);
+  if (!extremal) return false;
+  move = unbraked;
+  found = *extremal;
+  trajectory.begin(start);
+  return true;
 }
 
 AxisMove begin_change(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
@@ -122,8 +143,13 @@ PositionPlan plan_position(const MotionState& start, const MotionState& target, 
   PositionPlan plan;
   plan.error = check_task(task);
   if (plan.error != TrajectoryError::none) return plan;
-  const AxisMove move = begin_move(task, plan.trajectory);
-  append_move(limits.jerk, move, fastest_move(move), plan.trajectory);
+  AxisMove move = begin_move(task, plan.trajectory);
+  ExtremalMove extremal;
+  if (plan.trajectory.brake_duration() > 0 && begin_without_brake(task, plan.trajectory, move, extremal)) {
+    append_move(limits.jerk, move, extremal, plan.trajectory);
+  } else {
+    append_move(limits.jerk, move, fastest_move(move), plan.trajectory);
+  }
   if (!finish_at(target, plan.trajectory)) plan = {TrajectoryError::out_of_range, {}};
   return plan;
 }

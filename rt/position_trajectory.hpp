@@ -31,6 +31,10 @@ struct PositionPlan {
 [[nodiscard]] TrajectoryError check_task(const AxisTask& task) noexcept;
 // begins the trajectory with its brake phases and returns what is then left to do, divided by the jerk limit;
 [[nodiscard]] AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept;
+// where that had to brake: whether the move can be made without, as one in flight towards a target that it reaches just
+// before its acceleration would take it beyond the velocity limit;
+[[nodiscard]] bool begin_without_brake(const AxisTask& task, AxisTrajectory& trajectory, AxisMove& move,
+                                       ExtremalMove& found) noexcept;
 // appends an extremal move;
 void append_move(double jerk, const AxisMove& rest, const ExtremalMove& move, AxisTrajectory& trajectory) noexcept;
 // ends it at the target; false: the inputs are too far apart in scale.

@@ -131,6 +131,11 @@ double common_duration(const Interface& way, std::span<const AxisTask> tasks,
       if (trajectories[i].duration() == duration) continue;  // its own least
       AxisTrajectory brake;
       const AxisMove rest = way.begin(tasks[i], brake);
+      if (brake.brake_duration() > 0) {  // the trajectory may have done without
+        const double least = brake.duration() + duration_of(way.fastest(rest), rest.a0, rest.af);
+        changed = changed || least > duration;
+        duration = std::max(duration, least);
+      }
       while (std::isfinite(duration) && !way.of_duration(rest, duration - brake.duration())) {
         const double next = brake.duration() + way.next_possible(rest, duration - brake.duration());
         duration = std::max(next, std::nextafter(duration, HUGE_VAL));
@@ -148,8 +153,13 @@ MotionPlan plan_together(const Interface& way, std::span<const AxisTask> tasks, 
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const TrajectoryError error = way.check(tasks[i]);
     if (error != TrajectoryError::none) return failure(error, i);
-    const AxisMove rest = way.begin(tasks[i], trajectories[i]);
-    append_move(tasks[i].limits.jerk, rest, way.fastest(rest), trajectories[i]);
+    AxisMove rest = way.begin(tasks[i], trajectories[i]);
+    ExtremalMove move;
+    if (!(way.position && trajectories[i].brake_duration() > 0 &&
+          begin_without_brake(tasks[i], trajectories[i], rest, move))) {
+      move = way.fastest(rest);
+    }
+    append_move(tasks[i].limits.jerk, rest, move, trajectories[i]);
     if (!way.finish(tasks[i], trajectories[i])) return failure(TrajectoryError::out_of_range, i);
     plan.duration = std::max(plan.duration, trajectories[i].duration());
   }
