@@ -103,6 +103,7 @@ ExtremalMove root_both_held(const FarthestMoves& f, double distance) noexcept {
 // Where a component of the family begins: with the shortest move there.
 struct Start {
   double peak = 0.0, trough = 0.0;
+  double following = 0.0;  // the one of them that follows from c, so that rounding of c moves it; its size
   bool trough_held = false;
   double distance = 0.0;
 };
@@ -157,6 +158,7 @@ Start bulge_start(const FarthestMoves& f) noexcept {
     start.peak = f.m;
     start.distance = distance_peak_held(f, f.af);
   }
+  start.following = start.peak;
   return start;
 }
 
@@ -167,6 +169,7 @@ Start dip_start(const FarthestMoves& f) noexcept {
   const double depth = std::sqrt(std::max(0.0, f.a0 * f.a0 - f.c));
   start.trough_held = depth > f.n;
   start.trough = start.trough_held ? -f.n : -depth;
+  start.following = -start.trough;
   start.distance = start.trough_held ? distance_trough_held(f, f.a0) : distance_free(f, f.a0, -depth);
   return start;
 }
@@ -226,13 +229,13 @@ ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, dou
   return low < high ? root_free(f, distance, low, high) : start_move(f, start);
 }
 
-// How far rounding of the positions, accelerations and velocities may move the distance of the start. That of the
-// velocities moves its duration first; more than a trace of the duration is no rounding.
+// How far rounding of the positions, accelerations and velocities may move the distance of the start (or of the end of
+// an island). That of the velocities moves its duration first; more than a trace of the duration is no rounding.
 double rounding_at(const FarthestMoves& f, const Start& start) noexcept {
   constexpr double kTrace = 1e-10, kTiny = std::numeric_limits<double>::min();
-  const double peak = std::max(start.peak, kTiny);
-  const double duration = f.af - f.a0 + 2 * (start.peak - start.trough) + f.c / peak;  // at least
-  const double time = std::min(f.velocity_rounding / peak, kTrace * duration);
+  const double duration =
+      f.af - f.a0 + 2 * (start.peak - start.trough) + f.c / std::max(start.peak, kTiny);  // at least
+  const double time = std::min(f.velocity_rounding / std::max(start.following, kTiny), kTrace * duration);
   return f.distance_rounding + std::abs(f.sigma) * time + 16 * kEpsilon * std::abs(start.distance) +
          f.velocity_rounding * duration;
 }
@@ -252,9 +255,9 @@ std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, 
     }
   }
   if (!island) return root_from(f, start, distance);
-  const double reach = distance_free(f, f.a0, end);
-  if (distance <= reach + rounding_at(f, start)) {
-    return root_before_maximum(f, start, std::min(distance, reach), std::min(end, start.trough));
+  const Start longest{f.a0, end, end, false, distance_free(f, f.a0, end)};
+  if (distance <= longest.distance + rounding_at(f, longest)) {
+    return root_before_maximum(f, start, std::min(distance, longest.distance), std::min(end, start.trough));
   }
   return std::nullopt;
 }
