@@ -179,8 +179,6 @@ TEST(PositionTrajectory, PlannedAgainInFlightGoesOnFromThereAndArrivesNoLater) {
     ASSERT_EQ(second.trajectory.at(0.0).velocity, rest.start.velocity);
     ASSERT_EQ(second.trajectory.at(0.0).acceleration, rest.start.acceleration);
     ASSERT_EQ(fault_of(rest, second.trajectory), "") << text(rest);
-    if (t + second.trajectory.duration() > first.duration() * (1 + 1e-6) && later < 12)
-      printf("%s T %.17g t %.17g T2 %.17g\n", text(task).c_str(), first.duration(), t, second.trajectory.duration());
     later += t + second.trajectory.duration() > first.duration() * (1 + 1e-6) ? 1 : 0;
   }
   // The state in flight is rounded; at scales millions apart that may ask for a detour to its last bit.
