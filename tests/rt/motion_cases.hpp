@@ -119,8 +119,8 @@ inline MotionState largest_of(const AxisTask& task, const AxisTrajectory& move) 
 }
 
 // What is wrong with a trajectory: nothing, if empty. It is integrated phase by phase, independently of its own
-// evaluation, and looked at in every phase where an extreme of velocity can lie. Once the brake has ended (or where
-// there is none) the limits hold; during it the velocity may be outside, but not the jerk.
+// evaluation, and looked at in every phase where an extreme of velocity can lie. Once inside its limits it stays there;
+// the jerk's limit holds always, the acceleration's from the end of the brake on.
 inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move) {
   const AxisLimits& l = task.limits;
   const MotionState scale = largest_of(task, move);
@@ -136,9 +136,13 @@ inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move) {
                          scale.velocity * (tick + 3e-10 * move.duration() + 1e-14 * scale.acceleration / l.jerk);
   MotionState s = task.start;
   double time = 0.0;
+  bool returned = move.brake_duration() == 0.0;  // inside the limits, where every state is from then on
+  const auto beyond = [](double x, double low, double high, double slack) {
+    return x > high + slack || x < low - slack;
+  };
   const auto outside = [&](const MotionState& x) {
-    return x.velocity > l.velocity_max + v_slack || x.velocity < l.velocity_min - v_slack ||
-           x.acceleration > l.acceleration_max + a_slack || x.acceleration < l.acceleration_min - a_slack;
+    return beyond(x.velocity, l.velocity_min, l.velocity_max, v_slack) ||
+           beyond(x.acceleration, l.acceleration_min, l.acceleration_max, a_slack);
   };
   const auto differs = [&](const MotionState& x, const MotionState& y) {
     return !(std::abs(x.position - y.position) <= p_slack && std::abs(x.velocity - y.velocity) <= v_slack &&
@@ -154,10 +158,9 @@ inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move) {
       return "a duration is " + std::to_string(phase.duration);
     if (std::abs(phase.jerk) > l.jerk * (1 + 1e-12)) return "the jerk is above its limit";
     if (differs(s, phase.start)) return "phase " + std::to_string(i) + " does not begin where the last one ended";
-    const bool braking = time < move.brake_duration() * (1 - 1e-12);
     s.acceleration = phase.start.acceleration;  // its last bit, held for long, moves the velocity
     const double turn = phase.jerk != 0 ? -s.acceleration / phase.jerk : -1.0;
-    if (!braking && turn > 0 && turn < phase.duration && outside(after(s, phase.jerk, turn))) {
+    if (returned && turn > 0 && turn < phase.duration && outside(after(s, phase.jerk, turn))) {
       return "beyond a limit within phase " + std::to_string(i);
     }
     for (double share : {0.25, 0.5, 0.75}) {
@@ -166,10 +169,14 @@ inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move) {
     }
     s = after(s, phase.jerk, phase.duration);
     time += phase.duration;
-    if (time >= move.brake_duration() * (1 + 1e-12) && outside(s)) {
-      return "beyond a limit after phase " + std::to_string(i);
+    if (returned && outside(s)) return "beyond a limit after phase " + std::to_string(i);
+    returned = returned || !outside(s);
+    if (!returned && time > move.brake_duration() + tick &&
+        beyond(s.acceleration, l.acceleration_min, l.acceleration_max, a_slack)) {
+      return "the brake leaves the acceleration beyond its limit";
     }
   }
+  if (!returned) return "never inside the limits";
   if (std::abs(time - move.duration()) > tick * 4) return "the phases do not add up to the duration";
   if (differs(s, task.target)) return "the target is missed";
   return {};
