@@ -13,7 +13,7 @@ namespace stillcut {
 
 struct StretchedMove {
   ExtremalMove farthest, least;
-  double share = 0.0;  // of the farthest, 0 to 1
+  double share = 0.0;  // of the farthest, 0 to 1; at 1 the other does not count
 };
 
 // The move over the distance asked in exactly this time; nothing if there is none. Some durations above the least are

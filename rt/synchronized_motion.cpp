@@ -104,6 +104,20 @@ void append_mixture(double j, const AxisMove& rest, const StretchedMove& move, d
   }
 }
 
+bool rests(const MotionState& s) noexcept { return s.velocity == 0.0 && s.acceleration == 0.0; }
+
+// From rest to rest time itself can run slower: the same path, every rate lower.
+void slow_down_time(const AxisTask& task, double duration, AxisTrajectory& trajectory) noexcept {
+  const AxisTrajectory fast = trajectory;
+  trajectory.begin(task.start);
+  if (fast.phase_count() == 0) trajectory.add(duration, 0.0, 0.0);
+  const double k = duration / fast.duration(), jerk_share = 1 / (k * k * k);
+  for (std::size_t i = 0; i < fast.phase_count(); ++i) {
+    const double next = i + 1 < fast.phase_count() ? fast.phase(i + 1).start.acceleration : 0.0;
+    trajectory.add(fast.phase(i).duration * k, fast.phase(i).jerk * jerk_share, next / (k * k));
+  }
+}
+
 // What the interfaces differ in.
 struct Interface {
   bool position;
@@ -167,11 +181,20 @@ MotionPlan plan_together(const Interface& way, std::span<const AxisTask> tasks, 
   plan.duration = common_duration(way, tasks, trajectories, plan.duration);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (trajectories[i].duration() == plan.duration) continue;
+    if (way.position && rests(tasks[i].start) && rests(tasks[i].target)) {
+      slow_down_time(tasks[i], plan.duration, trajectories[i]);
+      if (!way.finish(tasks[i], trajectories[i])) return failure(TrajectoryError::out_of_range, i);
+      continue;
+    }
     const AxisMove rest = way.begin(tasks[i], trajectories[i]);
     const double left = plan.duration - trajectories[i].duration();
     const auto move = way.of_duration(rest, left);
     if (!move) return failure(TrajectoryError::out_of_range, i);
-    append_mixture(tasks[i].limits.jerk, rest, *move, left, trajectories[i]);
+    if (move->share == 1.0) {
+      append_move(tasks[i].limits.jerk, rest, move->farthest, trajectories[i]);
+    } else {
+      append_mixture(tasks[i].limits.jerk, rest, *move, left, trajectories[i]);
+    }
     if (!way.finish(tasks[i], trajectories[i])) return failure(TrajectoryError::out_of_range, i);
   }
   return plan;

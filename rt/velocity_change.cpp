@@ -50,14 +50,29 @@ ExtremalMove fastest_change(const AxisMove& move) noexcept {
   return as_move(b, side, b.limit, std::max(0.0, (missing - (b.limit - high) * (b.limit + high)) / b.limit));
 }
 
+// Between the extremes lies every plateau p of the acceleration: the gain grows with it at the rate of its hold.
+// Between a0 and af it is ramp + p (T - |af - a0|); above both, -p^2 + p (T + a0 + af) - (a0^2 + af^2)/2; below, the
+// mirror image.
 std::optional<StretchedMove> change_of_duration(const AxisMove& move, double duration) noexcept {
   const Largest up = largest(move, 1.0, duration), down = largest(move, -1.0, duration);
   const double slack = 16 * std::numeric_limits<double>::epsilon() *
-                       (std::abs(move.v0) + std::abs(move.vf) + move.a0 * move.a0 + move.af * move.af +
-                        duration * std::min(duration, std::max(move.amax, -move.amin)));
+                       (std::abs(move.v0) + std::abs(move.vf) + move.a0 * move.a0 + move.af * move.af);
   if (up.excess < -slack || down.excess < -slack) return std::nullopt;
-  const double above = std::max(up.excess, 0.0), below = std::max(down.excess, 0.0);
-  return StretchedMove{up.move, down.move, above + below > 0 ? below / (above + below) : 1.0};
+  const double ramp_time = std::abs(move.af - move.a0), free_time = duration - ramp_time;
+  const double rest = (move.vf - move.v0) - (move.a0 + move.af) / 2 * ramp_time;
+  const double level = free_time > 0 ? rest / free_time : move.a0;
+  const double side =
+      level > std::max(move.a0, move.af) || (level >= std::min(move.a0, move.af) && move.af >= move.a0) ? 1 : -1;
+  const Bulge b = bulge_of(move, side);
+  const double low = std::min(b.b0, b.bf), high = std::max(b.b0, b.bf);
+  double plateau = std::clamp(side * level, low, high);
+  if (side * level > high) {
+    const double q = (duration + b.b0 + b.bf) / 2, squared = b.gain + (b.b0 * b.b0 + b.bf * b.bf) / 2;
+    plateau = std::clamp(squared / (q + std::sqrt(std::max(0.0, q * q - squared))), high, std::max(high, b.limit));
+  }
+  const double hold = std::max(0.0, duration - std::abs(plateau - b.b0) - std::abs(plateau - b.bf));
+  const ExtremalMove found{side, plateau, std::min(plateau, b.bf), hold, 0.0, 0.0};
+  return StretchedMove{found, found, 1.0};
 }
 
 double next_possible_change(const AxisMove& move, double duration) noexcept {

@@ -121,9 +121,17 @@ inline MotionState largest_of(const AxisTask& task, const AxisTrajectory& move) 
 // What is wrong with a trajectory: nothing, if empty. It is integrated phase by phase, independently of its own
 // evaluation, and looked at in every phase where an extreme of velocity can lie. Once inside its limits it stays there;
 // the jerk's limit holds always, the acceleration's from the end of the brake on.
-inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move) {
+// A stretched move is a mixture of the farthest and the least far: rounding is relative to what these reach.
+enum class Stretched { no, yes };
+inline std::string fault_of(const AxisTask& task, const AxisTrajectory& move, Stretched stretched = Stretched::no) {
   const AxisLimits& l = task.limits;
-  const MotionState scale = largest_of(task, move);
+  MotionState scale = largest_of(task, move);
+  if (stretched == Stretched::yes) {
+    const double t = move.duration();
+    scale.acceleration += std::min(std::max(l.acceleration_max, -l.acceleration_min), l.jerk * t);
+    scale.velocity += std::min(std::max(l.velocity_max, -l.velocity_min), scale.acceleration * t);
+    scale.position += scale.velocity * t;
+  }
   constexpr double kRounding = 1e-11;
   // A time is rounded to some 1e-16 of the duration, in which the state moves on.
   const double tick = 4e-15 * move.duration();
