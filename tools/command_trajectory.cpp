@@ -14,11 +14,11 @@
 #include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
 #include "dsp/numbers.hpp"
-#include "rt/position_trajectory.hpp"
-#include "rt/trajectory.hpp"
+#include "rt/synchronized_motion.hpp"
 #include "tools/commands.hpp"
 #include "tools/output_file.hpp"
 #include "tools/output_options.hpp"
+#include "tools/plot_trajectory.hpp"
 #include "tools/progress.hpp"
 
 namespace stillcut {
@@ -26,15 +26,19 @@ namespace {
 
 struct TrajectoryOptions : OutputOptions {
   std::string batch;
+  bool together = false;
 };
 
 const std::vector<std::string> kPositionColumns{"p0", "v0", "a0", "pf", "vf", "af", "vmax", "amax", "jmax"};
 const std::vector<std::string> kVelocityColumns{"v0", "a0", "vf", "af", "amax", "jmax"};
 
+const std::vector<std::string>& columns_of(bool position) { return position ? kPositionColumns : kVelocityColumns; }
+
 // A row's numbers under the names of the columns, in the order of the interface.
 struct MoveCase {
   bool position = false;
   std::vector<double> values;
+  int line = 0;
 };
 
 struct TimedMove {
@@ -44,7 +48,8 @@ struct TimedMove {
 
 struct Batch {
   bool position = false;
-  std::vector<TimedMove> moves;
+  std::vector<MoveCase> cases;
+  std::vector<TimedMove> moves;  // one a case
   std::size_t impossible = 0;
 };
 
@@ -80,7 +85,8 @@ TimedMove plan_timed(const MoveCase& c) {
 }
 
 // Which column makes the case impossible.
-std::size_t culprit(const MoveCase& c, TrajectoryError error, const std::vector<std::string>& names) {
+std::size_t culprit(const MoveCase& c, TrajectoryError error) {
+  const std::vector<std::string>& names = columns_of(c.position);
   const auto index = [&](const char* name) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
@@ -106,29 +112,87 @@ std::size_t culprit(const MoveCase& c, TrajectoryError error, const std::vector<
   }
 }
 
+AxisTask task_of(const MoveCase& c) {
+  const std::vector<double>& x = c.values;
+  if (c.position) return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}, symmetric_limits(x[6], x[7], x[8])};
+  return {{0.0, x[0], x[1]}, {0.0, x[2], x[3]}, symmetric_limits(1.0, x[4], x[5])};
+}
+
+// All cases as axes of one motion.
+struct JointMotion {
+  MotionPlan plan;
+  std::vector<AxisTrajectory> trajectories;
+};
+JointMotion plan_jointly(const std::vector<MoveCase>& cases, bool position, Synchronization synchronization) {
+  std::vector<AxisTask> tasks;
+  for (const MoveCase& c : cases) tasks.push_back(task_of(c));
+  JointMotion motion{{}, std::vector<AxisTrajectory>(cases.size())};
+  motion.plan = position ? plan_positions(tasks, motion.trajectories, synchronization)
+                         : plan_velocities(tasks, motion.trajectories, synchronization);
+  return motion;
+}
+
+std::vector<TimedMove> plan_together(const std::vector<MoveCase>& cases, bool position) {
+  const auto start = std::chrono::steady_clock::now();
+  const MotionPlan plan = plan_jointly(cases, position, Synchronization::time).plan;
+  const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+  const bool possible = plan.error == TrajectoryError::none;
+  std::vector<TimedMove> moves(cases.size(), {possible ? plan.duration : kNaN, spent.count(), TrajectoryError::none});
+  if (!possible) moves[plan.axis].error = plan.error;
+  return moves;
+}
+
+std::vector<MoveCase> read_cases(const CsvTable& table, bool position) {
+  std::vector<std::size_t> columns;
+  for (const std::string& name : columns_of(position)) columns.push_back(table.require_column(name));
+  std::vector<MoveCase> cases;
+  for (const CsvRow& row : table.rows()) {
+    MoveCase& c = cases.emplace_back(MoveCase{position, {}, row.line});
+    for (std::size_t column : columns) c.values.push_back(number_or_not_finite(table, row, column));
+  }
+  return cases;
+}
+
 Batch plan_batch(const TrajectoryOptions& options) {
   const CsvTable table = read_csv(options.batch);
   Batch batch;
   batch.position = table.find_column("p0").has_value() || table.find_column("pf").has_value();
-  const std::vector<std::string>& names = batch.position ? kPositionColumns : kVelocityColumns;
-  std::vector<std::size_t> columns;
-  for (const std::string& name : names) columns.push_back(table.require_column(name));
-  Progress progress("trajectories");
-  for (const CsvRow& row : table.rows()) {
-    MoveCase c{batch.position, {}};
-    for (std::size_t column : columns) c.values.push_back(number_or_not_finite(table, row, column));
-    const TimedMove move = plan_timed(c);
-    if (move.error != TrajectoryError::none) {
-      ++batch.impossible;
-      const std::string& name = names[culprit(c, move.error, names)];
-      std::cerr << "stillcut: " << InputError(options.batch, row.line, name + ": " + describe(move.error)).what()
-                << '\n';
+  batch.cases = read_cases(table, batch.position);
+  if (options.together) {
+    batch.moves = plan_together(batch.cases, batch.position);
+  } else {
+    Progress progress("trajectories");
+    for (const MoveCase& c : batch.cases) {
+      batch.moves.push_back(plan_timed(c));
+      progress.update(static_cast<double>(batch.moves.size()) / static_cast<double>(batch.cases.size()));
     }
-    batch.moves.push_back(move);
-    progress.update(static_cast<double>(batch.moves.size()) / static_cast<double>(table.rows().size()));
+    progress.finish();
   }
-  progress.finish();
+  for (std::size_t i = 0; i < batch.cases.size(); ++i) {
+    const TrajectoryError error = batch.moves[i].error;
+    if (!std::isfinite(batch.moves[i].duration_s)) ++batch.impossible;
+    if (error == TrajectoryError::none) continue;
+    const std::string& name = columns_of(batch.position)[culprit(batch.cases[i], error)];
+    const InputError reason(options.batch, batch.cases[i].line, name + ": " + describe(error));
+    std::cerr << "stillcut: " << reason.what() << '\n';
+  }
   return batch;
+}
+
+void draw(const Batch& batch, const TrajectoryOptions& options) {
+  constexpr std::size_t kMostDrawn = 7;
+  std::vector<MoveCase> cases;
+  for (std::size_t i = 0; i < batch.cases.size() && cases.size() < kMostDrawn; ++i) {
+    if (std::isfinite(batch.moves[i].duration_s)) cases.push_back(batch.cases[i]);
+  }
+  if (cases.empty()) throw InputError(options.batch, 0, "holds no possible case to draw");
+  const JointMotion motion =
+      plan_jointly(cases, batch.position, options.together ? Synchronization::time : Synchronization::none);
+  std::vector<DrawnMove> moves;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    moves.push_back({motion.trajectories[i], "line " + std::to_string(cases[i].line)});
+  }
+  plot::write_figure(trajectory_figure(moves, options.together ? "together: all arrive at once" : ""), options.plot);
 }
 
 void write_csv(const Batch& batch, const std::string& name) {
@@ -176,6 +240,7 @@ void run(const TrajectoryOptions& options) {
   check_output_options(options);
   const Batch batch = plan_batch(options);
   if (!options.csv.empty()) write_csv(batch, options.csv);
+  if (!options.plot.empty()) draw(batch, options);
   if (options.json) print_json(batch);
   if (!options.json && options.csv.empty()) print_summary(batch);
 }
@@ -196,6 +261,9 @@ void add_trajectory_command(CLI::App& app) {
                                       "Write duration and calculation time of each case, nan where it is impossible; - "
                                       "(or nothing) is standard output")
                          ->expected(0, 1);
+  command->add_flag("--together", options->together,
+                    "The cases are axes of one motion and arrive at once; calculation time is that of all");
+  command->add_option("--plot", options->plot, "Draw the first seven moves, to a .svg or .png file");
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer(
       "Example: 100 mm from rest to rest at 500 mm/s, 5 m/s^2 and 100 m/s^3, in mm\n"

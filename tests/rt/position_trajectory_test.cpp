@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "dsp/numbers.hpp"
-#include "tests/count_allocations.hpp"
 #include "tests/rt/motion_cases.hpp"
 
 namespace stillcut {
@@ -208,19 +207,6 @@ TEST(PositionTrajectory, StaysWhereItIsWhenThereIsNothingToDo) {
   const MotionState moving{100.0, 0.5, 0.3};
   EXPECT_EQ(plan_position(moving, moving, symmetric_limits(1.0, 1.0, 1.0)).trajectory.duration(), 0.0);
   EXPECT_EQ(AxisTrajectory{}.at(1.0).position, 0.0);
-}
-
-TEST(PositionTrajectory, AllocatesNothing) {
-  MotionCases cases{16};
-  std::vector<AxisTask> tasks;
-  for (int i = 0; i < 1'000; ++i) tasks.push_back(cases.next());
-  double sum = 0.0;
-  allocations = 0;
-  counting = true;
-  for (const AxisTask& task : tasks) sum += plan(task).trajectory.at(0.5).position;
-  counting = false;
-  EXPECT_EQ(allocations, 0);
-  EXPECT_TRUE(std::isfinite(sum));
 }
 
 TEST(PositionTrajectory, ReturnsWhyAMoveIsImpossible) {
