@@ -21,12 +21,13 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
   f.sigma = f.w0 + f.wf;
   const double gap_rounding = 8 * kEpsilon * (std::abs(v0) + std::abs(vf) + a0_squared + af_squared);
   f.velocity_rounding = 2 * kEpsilon * (std::abs(v0) + std::abs(vf));
-  // Carrying the ends to the instants without acceleration: a ramp from 0 to a covers w a + a^3/6.
-  const double from_start = f.a0 * (f.w0 + a0_squared / 6), to_end = f.af * (f.wf + af_squared / 6);
-  f.distance = side * move.distance + from_start - to_end;
-  f.distance_rounding =
-      move.distance_rounding +
-      8 * kEpsilon * (std::abs(f.a0) * (std::abs(v0) + a0_squared) + std::abs(f.af) * (std::abs(vf) + af_squared));
+  // Carrying the ends to the instants without acceleration: a ramp from 0 to a covers w a + a^3/6. The difference of
+  // the two, a0 w0 + a0^3/6 - af wf - af^3/6, is formed from differences, which are small where the ends are alike.
+  const double fall = f.a0 - f.af, mean = (f.a0 + f.af) / 2, squares = a0_squared + f.a0 * f.af + af_squared;
+  f.distance = side * move.distance + fall * (f.sigma / 2 + squares / 6) - mean * f.c;
+  f.distance_rounding = move.distance_rounding +
+                        8 * kEpsilon * (std::abs(fall) * (std::abs(f.sigma) + squares) + std::abs(mean * f.c)) +
+                        std::abs(mean) * f.velocity_rounding;
   const bool up = side > 0;
   f.m = up ? move.amax : -move.amin;
   f.n = up ? -move.amin : move.amax;
