@@ -101,7 +101,7 @@ ExtremalMove root_both_held(const FarthestMoves& f, double distance) noexcept {
 }
 
 // Where a component of the family begins: with the shortest move there.
-struct Start {
+struct FirstMember {
   double peak = 0.0, trough = 0.0;
   double following = 0.0;  // the one of them that follows from c, so that rounding of c moves it; its size
   bool trough_held = false;
@@ -110,7 +110,7 @@ struct Start {
 
 // The first (shortest) member that goes at least as far as `distance`, where the members from `start` on pass that
 // distance exactly once. The last of them end in the cruise.
-ExtremalMove root_from(const FarthestMoves& f, const Start& start, double distance) noexcept {
+ExtremalMove root_from(const FarthestMoves& f, const FirstMember& start, double distance) noexcept {
   const ChangeOfSpeed first = change_of_speed(f.gain0, f.m, f.a0), second = change_of_speed(f.gainf, f.n, -f.af);
   const double to_cruise = ((f.w0 + f.v) * first.duration() + (f.v + f.wf) * second.duration()) / 2;
   if (distance >= to_cruise) {
@@ -147,8 +147,8 @@ ExtremalMove root_from(const FarthestMoves& f, const Start& start, double distan
 }
 
 // Begins with a bulge: no trough below the target's acceleration.
-Start bulge_start(const FarthestMoves& f) noexcept {
-  Start start;
+FirstMember bulge_start(const FarthestMoves& f) noexcept {
+  FirstMember start;
   start.trough = f.af;
   const double peak_squared = f.af * f.af + f.c;
   if (peak_squared <= f.m * f.m) {
@@ -163,8 +163,8 @@ Start bulge_start(const FarthestMoves& f) noexcept {
 }
 
 // Begins with a dip below zero: no peak above the first acceleration, a0 > 0, a0^2 > c.
-Start dip_start(const FarthestMoves& f) noexcept {
-  Start start;
+FirstMember dip_start(const FarthestMoves& f) noexcept {
+  FirstMember start;
   start.peak = f.a0;
   const double depth = std::sqrt(std::max(0.0, f.a0 * f.a0 - f.c));
   start.trough_held = depth > f.n;
@@ -186,7 +186,7 @@ Beginning beginning(const FarthestMoves& f) noexcept {
 
 // The farthest distance is not monotone where the acceleration stays well above zero and the speed is negative: it may
 // first rise to a maximum. The trough of that maximum, if it lies between the start's and `end`.
-std::optional<double> trough_at_maximum(const FarthestMoves& f, const Start& start, double end) noexcept {
+std::optional<double> trough_at_maximum(const FarthestMoves& f, const FirstMember& start, double end) noexcept {
   const double free_below = f.c < f.m * f.m ? std::sqrt(f.m * f.m - f.c) : -f.n;
   const double held = f.m * f.m / 16 - f.wf;
   if (held > 0) {  // wf + B^2 - m B/2 = 0
@@ -202,7 +202,7 @@ std::optional<double> trough_at_maximum(const FarthestMoves& f, const Start& sta
   return std::nullopt;
 }
 
-ExtremalMove start_move(const FarthestMoves& f, const Start& start) noexcept {
+ExtremalMove start_move(const FarthestMoves& f, const FirstMember& start) noexcept {
   ExtremalMove move;
   move.peak = start.peak;
   move.trough = start.trough;
@@ -215,7 +215,8 @@ ExtremalMove start_move(const FarthestMoves& f, const Start& start) noexcept {
 }
 
 // Before that maximum the distance rises: the root there.
-ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, double distance, double end) noexcept {
+ExtremalMove root_before_maximum(const FarthestMoves& f, const FirstMember& start, double distance,
+                                 double end) noexcept {
   const double s = f.c < f.m * f.m ? std::sqrt(f.m * f.m - f.c) : -f.n;
   double b = start.trough, a = start.peak;
   if (b > s) {
@@ -231,7 +232,7 @@ ExtremalMove root_before_maximum(const FarthestMoves& f, const Start& start, dou
 
 // How far rounding of the positions, accelerations and velocities may move the distance of the start (or of the end of
 // an island). That of the velocities moves its duration first; more than a trace of the duration is no rounding.
-double rounding_at(const FarthestMoves& f, const Start& start) noexcept {
+double rounding_at(const FarthestMoves& f, const FirstMember& start) noexcept {
   constexpr double kTrace = 1e-10, kTiny = std::numeric_limits<double>::min();
   const double duration =
       f.af - f.a0 + 2 * (start.peak - start.trough) + f.c / std::max(start.peak, kTiny);  // at least
@@ -242,7 +243,8 @@ double rounding_at(const FarthestMoves& f, const Start& start) noexcept {
 
 // The fastest on a component that begins with `start`, where distance >= start.distance; nothing when it is an island
 // (ends at trough `end` > 0) that does not reach so far.
-std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, double distance, bool island) noexcept {
+std::optional<ExtremalMove> root_on(const FarthestMoves& f, const FirstMember& start, double distance,
+                                    bool island) noexcept {
   const double end = island ? std::sqrt(std::max(0.0, f.a0 * f.a0 - f.c)) : -f.n;
   if (start.trough > 0) {
     if (const auto top = trough_at_maximum(f, start, end)) {
@@ -255,7 +257,7 @@ std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, 
     }
   }
   if (!island) return root_from(f, start, distance);
-  const Start longest{f.a0, end, end, false, distance_free(f, f.a0, end)};
+  const FirstMember longest{f.a0, end, end, false, distance_free(f, f.a0, end)};
   if (distance <= longest.distance + rounding_at(f, longest)) {
     return root_before_maximum(f, start, std::min(distance, longest.distance), std::min(end, start.trough));
   }
@@ -265,7 +267,7 @@ std::optional<ExtremalMove> root_on(const FarthestMoves& f, const Start& start, 
 // Where the distance first shrinks as the duration grows (or may soon), one beyond the start's by rounding only would
 // cost a detour: then the start itself is the answer. The rate is wf + B^2 - A B/2, the Hamiltonian of the extremal; it
 // falls while B > A/4.
-bool is_start(const FarthestMoves& f, const Start& start, double distance) noexcept {
+bool is_start(const FarthestMoves& f, const FirstMember& start, double distance) noexcept {
   if (std::abs(distance - start.distance) > rounding_at(f, start)) return false;
   const double speed = start.trough_held ? f.w0 + start.peak * start.peak : f.wf + start.trough * start.trough;
   return speed - start.peak * start.trough / 2 < 0 || start.trough > start.peak / 4;
@@ -277,7 +279,7 @@ std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexc
   for (double side : {1.0, -1.0}) {
     const FarthestMoves f = farthest_moves(move, side);
     if (beginning(f) != Beginning::island) return std::nullopt;
-    const Start start = bulge_start(f);
+    const FirstMember start = bulge_start(f);
     if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
     if (f.distance < start.distance) continue;
     const auto found = root_on(f, start, f.distance, true);
@@ -289,7 +291,7 @@ std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexc
 ExtremalMove fastest_move(const AxisMove& move) noexcept {
   FarthestMoves f = farthest_moves(move, 1.0);
   Beginning kind = beginning(f);
-  Start start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+  FirstMember start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
   if (f.distance < start.distance) {  // the same start, mirrored
     f = farthest_moves(move, -1.0);
     kind = beginning(f);

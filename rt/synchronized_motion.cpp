@@ -136,9 +136,11 @@ struct Interface {
 
 MotionPlan failure(TrajectoryError error, std::size_t axis) noexcept { return {error, axis, 0.0}; }
 
-// The least time from `duration` on that every axis can take.
+// The least time from `duration` on that every axis can take; infinite where rounding leaves none.
 double common_duration(const Interface& way, std::span<const AxisTask> tasks,
                        std::span<const AxisTrajectory> trajectories, double duration) noexcept {
+  constexpr int kMostSteps = 300;
+  int steps = 0;
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -150,9 +152,13 @@ double common_duration(const Interface& way, std::span<const AxisTask> tasks,
         changed = changed || least > duration;
         duration = std::max(duration, least);
       }
-      while (std::isfinite(duration) && !way.of_duration(rest, duration - brake.duration())) {
+      // The next possible one may be missed by rounding: a little later, then.
+      double more = 0.0;
+      while (!way.of_duration(rest, duration - brake.duration())) {
+        if (++steps > kMostSteps || !std::isfinite(duration)) return HUGE_VAL;
         const double next = brake.duration() + way.next_possible(rest, duration - brake.duration());
-        duration = std::max(next, std::nextafter(duration, HUGE_VAL));
+        more = std::max(2 * more, 4e-16 * duration);
+        duration = next > duration ? next : duration + more;
         changed = true;
       }
     }
@@ -179,6 +185,7 @@ MotionPlan plan_together(const Interface& way, std::span<const AxisTask> tasks, 
   }
   if (synchronization == Synchronization::none) return plan;
   plan.duration = common_duration(way, tasks, trajectories, plan.duration);
+  if (!std::isfinite(plan.duration)) return failure(TrajectoryError::out_of_range, 0);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (trajectories[i].duration() == plan.duration) continue;
     if (way.position && rests(tasks[i].start) && rests(tasks[i].target)) {

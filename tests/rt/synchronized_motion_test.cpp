@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "rt/stretched_move.hpp"
@@ -157,6 +158,34 @@ TEST(SynchronizedMotion, StretchesTimeItselfFromRestToRest) {
     EXPECT_NEAR(moves[1].at(share * plan.duration).position, alone.at(share * alone.duration()).position, 1e-14);
     EXPECT_EQ(moves[2].at(share * plan.duration).position, 5.0) << "what is there already does not move";
   }
+}
+
+// No input makes it hang, and what has no answer in doubles says so.
+TEST(SynchronizedMotion, EndsForAnyNumbers) {
+  std::mt19937_64 random{25};
+  const auto any = [&]() -> double {
+    if (random() % 6 == 0) return 0.0;
+    const int reach = random() % 2 == 0 ? 30 : 1000;
+    const double mantissa = 1.0 + static_cast<double>(random() % 1000) / 1000.0;
+    return std::ldexp(random() % 2 == 0 ? mantissa : -mantissa, static_cast<int>(random() % (2 * reach)) - reach);
+  };
+  int planned = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    std::vector<AxisTask> tasks(1 + random() % 3);
+    for (AxisTask& task : tasks) {
+      task.start = {any(), any(), any()};
+      task.target = {any(), random() % 2 == 0 ? any() : 0.0, random() % 2 == 0 ? any() : 0.0};
+      task.limits = {std::abs(any()), -std::abs(any()), std::abs(any()), -std::abs(any()), std::abs(any())};
+    }
+    std::vector<AxisTrajectory> moves(tasks.size());
+    for (auto plan : {plan_positions, plan_velocities}) {
+      const MotionPlan found = plan(tasks, moves, Synchronization::time);
+      if (found.error != TrajectoryError::none) continue;
+      ASSERT_TRUE(found.duration >= 0 && std::isfinite(found.duration)) << text(tasks[0]);
+      ++planned;
+    }
+  }
+  EXPECT_GT(planned, 10'000);
 }
 
 TEST(SynchronizedMotion, ReturnsWhichAxisIsImpossible) {
