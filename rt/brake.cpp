@@ -10,13 +10,13 @@ namespace {
 // Slowing down (jerk -1), in quantities mirrored so that the start is too fast: until the speed is back at its upper
 // limit, but not beyond the last instant at which the lower limit can still be kept.
 Brake slow_down(double v0, double a0, double vmax, double vmin, double amin) noexcept {
-  const double to_limit = a0 + std::sqrt(std::max(0.0, a0 * a0 + 2 * (v0 - vmax)));
-  const double to_last = a0 + std::sqrt(std::max(0.0, a0 * a0 / 2 + v0 - vmin));  // there v - a^2/2 = vmin
-  const double ramp = std::max(0.0, std::min(to_limit, to_last));
-  if (ramp <= a0 - amin) return {-1.0, ramp, 0.0};
+  const double at_limit = -std::sqrt(std::max(0.0, a0 * a0 + 2 * (v0 - vmax)));
+  const double at_last = -std::sqrt(std::max(0.0, a0 * a0 / 2 + v0 - vmin));  // there v - a^2/2 = vmin
+  const double reached = std::max(at_limit, at_last);
+  if (reached >= amin) return {-1.0, std::max(0.0, a0 - reached), 0.0, std::min(a0, reached)};
   const double v = v0 + (a0 - amin) * (a0 + amin) / 2;
   const double hold = std::min((v - vmax) / -amin, (v - amin * amin / 2 - vmin) / -amin);
-  return {-1.0, std::max(0.0, a0 - amin), std::max(0.0, hold)};
+  return {-1.0, std::max(0.0, a0 - amin), std::max(0.0, hold), amin};
 }
 
 // The start's acceleration is above its limit.
@@ -24,11 +24,12 @@ Brake ease(double v0, double a0, double vmax, double vmin, double amax, double a
   if (v0 + a0 * a0 / 2 > vmax) return slow_down(v0, a0, vmax, vmin, amin);
   const double v = v0 + (a0 - amax) * (a0 + amax) / 2;
   const double hold = std::min((vmin - v) / amax, (vmax - amax * amax / 2 - v) / amax);
-  return {-1.0, a0 - amax, std::max(0.0, hold)};
+  return {-1.0, a0 - amax, std::max(0.0, hold), amax};
 }
 
 Brake mirrored(Brake brake) noexcept {
   brake.jerk = -brake.jerk;
+  brake.acceleration = -brake.acceleration;
   return brake;
 }
 

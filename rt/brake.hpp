@@ -10,6 +10,7 @@ namespace stillcut {
 struct Brake {
   double jerk = 0.0;              // 1, -1; 0: none is needed
   double ramp = 0.0, hold = 0.0;  // s
+  double acceleration = 0.0;      // at the end of the ramp
 };
 
 // Of `move`, the start and the limits are used.

@@ -72,10 +72,11 @@ double distance_peak_held(const FarthestMoves& f, double b) noexcept {
          (2 * f.m);
 }
 
-// The same backwards: c = A^2 - n^2 - n h.
-double distance_trough_held(const FarthestMoves& f, double a) noexcept {
-  return (a * a * (a * a + 2 * f.w0 + f.n * f.n + 2 * f.n * a) + 4 * f.n * f.w0 * a + f.sigma * (f.n * f.n - f.c)) /
-         (2 * f.n);
+// With the hold as the unknown: c may be large beside n h = A^2 - n^2 - c. Its derivative is (w0 + A^2 + n A/2)(1 +
+// n/A).
+double distance_trough_held(const FarthestMoves& f, double a, double hold) noexcept {
+  const double end = f.wf + f.n * f.n / 2;  // the speed at which the hold ends
+  return f.n * end + hold * (end + f.n * hold / 2) + (end + f.n * hold) * (f.n + a) + a * (f.w0 + f.n * f.n / 2);
 }
 
 ChangeOfSpeed change_of_speed(double gain, double limit, double least) noexcept {

@@ -55,8 +55,8 @@ struct FarthestMoves {
 
 // Distance of a member of the family whose trough is B and whose peak is held (or only just reaches m) ...
 [[nodiscard]] double distance_peak_held(const FarthestMoves& family, double trough) noexcept;
-// ... whose peak is A and whose trough is held ...
-[[nodiscard]] double distance_trough_held(const FarthestMoves& family, double peak) noexcept;
+// ... whose peak is A = sqrt(c + n^2 + n h) and whose trough is held for h ...
+[[nodiscard]] double distance_trough_held(const FarthestMoves& family, double peak, double hold) noexcept;
 // ... whose peak and trough are free: (A - B)(sigma - A B).
 [[nodiscard]] inline double distance_free(const FarthestMoves& family, double peak, double trough) noexcept {
   const double width = trough > 0.0 ? family.c / (peak + trough) : peak - trough;

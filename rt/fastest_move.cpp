@@ -70,16 +70,17 @@ ExtremalMove root_peak_held(const FarthestMoves& f, double distance, double low,
 }
 
 ExtremalMove root_trough_held(const FarthestMoves& f, double distance, double low, double high) noexcept {
-  const double inverse = 1 / f.n;
-  const double a = bracketed_root(
+  const double squared = f.c + f.n * f.n;
+  const double hold = bracketed_root(
       [&](double x) {
-        return ValueSlope{distance_trough_held(f, x) - distance, (f.w0 + x * x + f.n * x / 2) * (2 * x * inverse + 2)};
+        const double a = std::sqrt(squared + f.n * x);
+        return ValueSlope{distance_trough_held(f, a, x) - distance, (f.w0 + a * a + f.n * a / 2) * (1 + f.n / a)};
       },
       low, high, high);
   ExtremalMove move;
-  move.peak = a;
+  move.peak = std::min(std::sqrt(squared + f.n * hold), f.m);
   move.trough = -f.n;
-  move.trough_hold = std::max(0.0, (a * a - f.n * f.n - f.c) * inverse);
+  move.trough_hold = hold;
   return move;
 }
 
@@ -105,6 +106,7 @@ struct FirstMember {
   double peak = 0.0, trough = 0.0;
   double following = 0.0;  // the one of them that follows from c, so that rounding of c moves it; its size
   bool trough_held = false;
+  double hold = 0.0;  // of the trough
   double distance = 0.0;
 };
 
@@ -139,7 +141,8 @@ ExtremalMove root_from(const FarthestMoves& f, const FirstMember& start, double 
     trough_held = s > n;
   }
   if (trough_held) {
-    if (distance <= distance_trough_held(f, m)) return root_trough_held(f, distance, peak_free, m);
+    const double longest = std::max(start.hold, (m * m - n * n - f.c) / n);
+    if (distance <= distance_trough_held(f, m, longest)) return root_trough_held(f, distance, start.hold, longest);
   } else if (distance <= distance_peak_held(f, -n)) {
     return root_peak_held(f, distance, b, -n);
   }
@@ -170,7 +173,12 @@ FirstMember dip_start(const FarthestMoves& f) noexcept {
   start.trough_held = depth > f.n;
   start.trough = start.trough_held ? -f.n : -depth;
   start.following = -start.trough;
-  start.distance = start.trough_held ? distance_trough_held(f, f.a0) : distance_free(f, f.a0, -depth);
+  if (start.trough_held) {
+    start.hold = (depth - f.n) * (depth + f.n) / f.n;
+    start.distance = distance_trough_held(f, f.a0, start.hold);
+  } else {
+    start.distance = distance_free(f, f.a0, -depth);
+  }
   return start;
 }
 
@@ -207,7 +215,7 @@ ExtremalMove start_move(const FarthestMoves& f, const FirstMember& start) noexce
   move.peak = start.peak;
   move.trough = start.trough;
   if (start.trough_held) {
-    move.trough_hold = std::max(0.0, (start.peak * start.peak - f.n * f.n - f.c) / f.n);
+    move.trough_hold = start.hold;
   } else if (start.peak == f.m) {
     move.peak_hold = std::max(0.0, (f.c - f.m * f.m + start.trough * start.trough) / f.m);
   }
@@ -257,7 +265,7 @@ std::optional<ExtremalMove> root_on(const FarthestMoves& f, const FirstMember& s
     }
   }
   if (!island) return root_from(f, start, distance);
-  const FirstMember longest{f.a0, end, end, false, distance_free(f, f.a0, end)};
+  const FirstMember longest{f.a0, end, end, false, 0.0, distance_free(f, f.a0, end)};
   if (distance <= longest.distance + rounding_at(f, longest)) {
     return root_before_maximum(f, start, std::min(distance, longest.distance), std::min(end, start.trough));
   }

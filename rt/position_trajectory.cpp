@@ -74,7 +74,7 @@ AxisMove begin_move(const AxisTask& task, AxisTrajectory& trajectory) noexcept {
   trajectory.begin(task.start);
   if (const Brake brake = brake_of(move); brake.jerk != 0.0) {
     const double j = task.limits.jerk;
-    move.a0 = std::clamp(move.a0 + brake.jerk * brake.ramp, move.amin, move.amax);
+    move.a0 = brake.acceleration;
     trajectory.add(brake.ramp, brake.jerk * j, move.a0 * j);
     trajectory.add(brake.hold, 0.0, move.a0 * j);
     trajectory.end_brake();

@@ -32,12 +32,12 @@ Member without_cruise(const FarthestMoves& f, double time) noexcept {
   const double peak = (sum + width) / 2, trough = (sum - width) / 2;
   if (peak <= f.m && trough >= -f.n) return member(f, peak, 0.0, trough, 0.0, distance_free(f, peak, trough));
   if (peak > f.m) {  // time = 2 m + h - 2 B, with the hold h from c = m^2 - B^2 + m h
-    const double b = f.m - std::sqrt(std::max(0.0, f.m * time - f.c)), hold = (f.c - f.m * f.m + b * b) / f.m;
+    const double b = f.m - std::sqrt(std::max(0.0, f.m * time - f.c)), hold = time - 2 * f.m + 2 * b;
     if (b >= -f.n && hold >= 0) return member(f, f.m, hold, b, 0.0, distance_peak_held(f, b));
   }
   if (trough < -f.n) {  // the same backwards
-    const double a = std::sqrt(std::max(0.0, f.c + f.n * time)) - f.n, hold = (a * a - f.n * f.n - f.c) / f.n;
-    if (a <= f.m && hold >= 0) return member(f, a, 0.0, -f.n, hold, distance_trough_held(f, a));
+    const double a = std::sqrt(std::max(0.0, f.c + f.n * time)) - f.n, hold = time - 2 * f.n - 2 * a;
+    if (a <= f.m && hold >= 0) return member(f, a, 0.0, -f.n, hold, distance_trough_held(f, a, hold));
   }
   return both_held(f, time);
 }

@@ -185,7 +185,7 @@ TEST(SynchronizedMotion, EndsForAnyNumbers) {
       ++planned;
     }
   }
-  EXPECT_GT(planned, 10'000);
+  EXPECT_GT(planned, 5'000);
 }
 
 TEST(SynchronizedMotion, ReturnsWhichAxisIsImpossible) {
