@@ -65,7 +65,7 @@ ExtremalMove root_peak_held(const FarthestMoves& f, double distance, double low,
   ExtremalMove move;
   move.peak = f.m;
   move.trough = b;
-  move.peak_hold = std::max(0.0, (f.c - f.m * f.m + b * b) * inverse);
+  move.peak_hold = std::max(0.0, (f.c - (f.m - b) * (f.m + b)) * inverse);
   return move;
 }
 
@@ -217,7 +217,7 @@ ExtremalMove start_move(const FarthestMoves& f, const FirstMember& start) noexce
   if (start.trough_held) {
     move.trough_hold = start.hold;
   } else if (start.peak == f.m) {
-    move.peak_hold = std::max(0.0, (f.c - f.m * f.m + start.trough * start.trough) / f.m);
+    move.peak_hold = std::max(0.0, (f.c - (f.m - start.trough) * (f.m + start.trough)) / f.m);
   }
   return move;
 }
