@@ -59,7 +59,11 @@ FarthestMoves farthest_moves(const AxisMove& move, double side) noexcept {
 
 ExtremalMove in_order(const FarthestMoves& family, ExtremalMove move) noexcept {
   move.side = family.side;
+  move.rise = move.peak - family.a0;
+  move.fall = move.peak - move.trough;
+  move.settle = family.af - move.trough;
   if (family.reversed) {
+    std::swap(move.rise, move.settle);
     move.peak = -std::exchange(move.trough, -move.peak);
     std::swap(move.peak_hold, move.trough_hold);
   }

@@ -31,6 +31,10 @@ struct ExtremalMove {
   double side = 1.0;  // 1: the farthest; -1: the least far
   double peak = 0.0, trough = 0.0;
   double peak_hold = 0.0, cruise = 0.0, trough_hold = 0.0;  // s
+  // Of the first ramp, of that from peak to trough (or the two beside the cruise), of the last; s.
+  double rise = 0.0, fall = 0.0, settle = 0.0;
+
+  [[nodiscard]] double duration() const noexcept { return rise + peak_hold + fall + cruise + trough_hold + settle; }
 };
 
 // The family of farthest moves with these ends, in a normal form. The ends are carried back (and on) along the jerk
@@ -79,9 +83,8 @@ struct ChangeOfSpeed {
 // not between those of the ends.
 [[nodiscard]] std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexcept;
 
-[[nodiscard]] inline double duration_of(const ExtremalMove& move, double a0, double af) noexcept {
-  return (move.peak - move.side * a0) + move.peak_hold + (move.peak - move.trough) + move.cruise + move.trough_hold +
-         (move.side * af - move.trough);
-}
+// Mends, where the whole move is short beside a0 and af, what carrying the ends to the instants without acceleration
+// has cost in precision: Newton steps on the equations of the move itself.
+[[nodiscard]] ExtremalMove mend(const AxisMove& move, const ExtremalMove& found) noexcept;
 
 }  // namespace stillcut

@@ -281,6 +281,14 @@ bool is_start(const FarthestMoves& f, const FirstMember& start, double distance)
   return speed - start.peak * start.trough / 2 < 0 || start.trough > start.peak / 4;
 }
 
+// A move in which the acceleration never is zero may be short beside it.
+ExtremalMove mended(const AxisMove& move, const ExtremalMove& found) noexcept {
+  constexpr double kShort = 0.1;
+  const bool is_short =
+      found.peak * found.trough > 0 && found.duration() < kShort * (std::abs(move.a0) + std::abs(move.af));
+  return is_short ? mend(move, found) : found;
+}
+
 }  // namespace
 
 std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexcept {
@@ -291,7 +299,7 @@ std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexc
     if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
     if (f.distance < start.distance) continue;
     const auto found = root_on(f, start, f.distance, true);
-    return found ? std::optional(in_order(f, *found)) : std::nullopt;
+    return found ? std::optional(mended(move, in_order(f, *found))) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -306,7 +314,9 @@ ExtremalMove fastest_move(const AxisMove& move) noexcept {
     start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
   }
   if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
-  if (const auto found = root_on(f, start, f.distance, kind == Beginning::island)) return in_order(f, *found);
+  if (const auto found = root_on(f, start, f.distance, kind == Beginning::island)) {
+    return mended(move, in_order(f, *found));
+  }
   // Beyond the island: on to the moves that dip below zero.
   start = dip_start(f);
   if (f.distance < start.distance) {

@@ -119,17 +119,17 @@ AxisMove begin_change(const AxisTask& task, AxisTrajectory& trajectory) noexcept
 
 void append_move(double jerk, const AxisMove& rest, const ExtremalMove& move, AxisTrajectory& trajectory) noexcept {
   const double up = move.side * jerk, a_peak = move.peak * up, a_trough = move.trough * up;
-  trajectory.add(move.peak - move.side * rest.a0, up, a_peak);
+  trajectory.add(move.rise, up, a_peak);
   trajectory.add(move.peak_hold, 0.0, a_peak);
   if (move.cruise > 0) {
     trajectory.add(move.peak, -up, 0.0);
     trajectory.add(move.cruise, 0.0, 0.0);
     trajectory.add(-move.trough, -up, a_trough);
   } else {
-    trajectory.add(move.peak - move.trough, -up, a_trough);
+    trajectory.add(move.fall, -up, a_trough);
   }
   trajectory.add(move.trough_hold, 0.0, a_trough);
-  trajectory.add(move.side * rest.af - move.trough, up, rest.af * jerk);
+  trajectory.add(move.settle, up, rest.af * jerk);
 }
 
 bool finish_at(const MotionState& target, AxisTrajectory& trajectory) noexcept {

@@ -34,16 +34,16 @@ struct JerkPhases {
   }
 };
 
-JerkPhases phases_of(const ExtremalMove& move, double a0, double af) noexcept {
+JerkPhases phases_of(const ExtremalMove& move, double af) noexcept {
   JerkPhases p;
   const double s = move.side;
-  p.add(move.peak - s * a0, s, s * move.peak);
+  p.add(move.rise, s, s * move.peak);
   p.add(move.peak_hold, 0.0, s * move.peak);
-  p.add(move.cruise > 0 ? move.peak : move.peak - move.trough, -s, move.cruise > 0 ? 0.0 : s * move.trough);
+  p.add(move.cruise > 0 ? move.peak : move.fall, -s, move.cruise > 0 ? 0.0 : s * move.trough);
   p.add(move.cruise, 0.0, 0.0);
   p.add(move.cruise > 0 ? -move.trough : 0.0, -s, s * move.trough);
   p.add(move.trough_hold, 0.0, s * move.trough);
-  p.add(s * af - move.trough, s, af);
+  p.add(move.settle, s, af);
   return p;
 }
 
@@ -82,7 +82,7 @@ JerkPhases mixture(const JerkPhases& x, std::size_t x_end, const JerkPhases& y, 
 void append_mixture(double j, const AxisMove& rest, const StretchedMove& move, double duration,
                     AxisTrajectory& trajectory) noexcept {
   const double share = move.share;
-  const JerkPhases x = phases_of(move.farthest, rest.a0, rest.af), y = phases_of(move.least, rest.a0, rest.af);
+  const JerkPhases x = phases_of(move.farthest, rest.af), y = phases_of(move.least, rest.af);
   const JerkPhases x_back = backwards(x, rest.a0), y_back = backwards(y, rest.a0);
   const std::size_t x_pivot = x.longest(), y_pivot = y.longest();
   JerkPhases front = mixture(x, x_pivot, y, y_pivot, share, rest.a0);
@@ -148,7 +148,7 @@ double common_duration(const Interface& way, std::span<const AxisTask> tasks,
       AxisTrajectory brake;
       const AxisMove rest = way.begin(tasks[i], brake);
       if (brake.brake_duration() > 0) {  // the trajectory may have done without
-        const double least = brake.duration() + duration_of(way.fastest(rest), rest.a0, rest.af);
+        const double least = brake.duration() + way.fastest(rest).duration();
         changed = changed || least > duration;
         duration = std::max(duration, least);
       }

@@ -16,7 +16,7 @@ Bulge bulge_of(const AxisMove& move, double side) noexcept {
 }
 
 ExtremalMove as_move(const Bulge& b, double side, double peak, double hold) noexcept {
-  return {side, peak, b.bf, hold, 0.0, 0.0};
+  return {side, peak, b.bf, hold, 0.0, 0.0, peak - b.b0, peak - b.bf, 0.0};
 }
 
 // The largest gain in this time and how much it exceeds what is asked: A^2 - (b0^2 + bf^2)/2 + m h.
@@ -71,7 +71,8 @@ std::optional<StretchedMove> change_of_duration(const AxisMove& move, double dur
     plateau = std::clamp(squared / (q + std::sqrt(std::max(0.0, q * q - squared))), high, std::max(high, b.limit));
   }
   const double hold = std::max(0.0, duration - std::abs(plateau - b.b0) - std::abs(plateau - b.bf));
-  const ExtremalMove found{side, plateau, std::min(plateau, b.bf), hold, 0.0, 0.0};
+  const double trough = std::min(plateau, b.bf);
+  const ExtremalMove found{side, plateau, trough, hold, 0.0, 0.0, plateau - b.b0, plateau - trough, b.bf - trough};
   return StretchedMove{found, found, 1.0};
 }
 

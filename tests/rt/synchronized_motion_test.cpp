@@ -99,7 +99,7 @@ TEST(StretchedMove, NextPossibleDurationIsTheNext) {
     AxisTrajectory brake;
     const AxisMove rest = begin_move(task, brake);
     if (brake.duration() > 0) continue;
-    const double least = duration_of(fastest_move(rest), rest.a0, rest.af);
+    const double least = fastest_move(rest).duration();
     ASSERT_TRUE(move_of_duration(rest, least * (1 + 1e-9)).has_value() ||
                 next_possible_duration(rest, least * (1 + 1e-9)) > least)
         << text(task);
