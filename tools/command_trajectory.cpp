@@ -125,6 +125,7 @@ struct JointMotion {
 };
 JointMotion plan_jointly(const std::vector<MoveCase>& cases, bool position, Synchronization synchronization) {
   std::vector<AxisTask> tasks;
+  tasks.reserve(cases.size());
   for (const MoveCase& c : cases) tasks.push_back(task_of(c));
   JointMotion motion{{}, std::vector<AxisTrajectory>(cases.size())};
   motion.plan = position ? plan_positions(tasks, motion.trajectories, synchronization)
@@ -207,6 +208,7 @@ void write_csv(const Batch& batch, const std::string& name) {
 // Quantile of the calculation times, ns; NaN without cases.
 double calc_quantile(const Batch& batch, double share) {
   std::vector<double> times;
+  times.reserve(batch.moves.size());
   for (const TimedMove& move : batch.moves) times.push_back(move.calc_ns);
   if (times.empty()) return kNaN;
   std::sort(times.begin(), times.end());
