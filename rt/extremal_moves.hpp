@@ -86,5 +86,7 @@ struct ChangeOfSpeed {
 // Mends, where the whole move is short beside a0 and af, what carrying the ends to the instants without acceleration
 // has cost in precision: Newton steps on the equations of the move itself.
 [[nodiscard]] ExtremalMove mend(const AxisMove& move, const ExtremalMove& found) noexcept;
+// How much farther than asked such a move (without cruise) goes, mirrored by its side, without that loss.
+[[nodiscard]] double excess_of(const AxisMove& move, const ExtremalMove& found) noexcept;
 
 }  // namespace stillcut

@@ -194,11 +194,22 @@ bool is_start(const FarthestMoves& f, const FirstMember& start, double distance)
 }
 
 // A move in which the acceleration never is zero may be short beside it.
-ExtremalMove mended(const AxisMove& move, const ExtremalMove& found) noexcept {
+bool is_short(const AxisMove& move, const ExtremalMove& found) noexcept {
   constexpr double kShort = 0.1;
-  const bool is_short =
-      found.peak * found.trough > 0 && found.duration() < kShort * (std::abs(move.a0) + std::abs(move.af));
-  return is_short ? mend(move, found) : found;
+  return found.peak * found.trough > 0 && found.duration() < kShort * (std::abs(move.a0) + std::abs(move.af));
+}
+ExtremalMove mended(const AxisMove& move, const ExtremalMove& found) noexcept {
+  return is_short(move, found) ? mend(move, found) : found;
+}
+
+// With which move the family begins.
+FirstMember first_member(const AxisMove& move, const FarthestMoves& f, Beginning kind) noexcept {
+  FirstMember start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+  if (start.peak * start.trough > 0) {
+    const ExtremalMove shortest = in_order(f, start_move(f, start));
+    if (is_short(move, shortest)) start.distance = f.distance + excess_of(move, shortest);
+  }
+  return start;
 }
 
 }  // namespace
@@ -207,7 +218,7 @@ std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexc
   for (double side : {1.0, -1.0}) {
     const FarthestMoves f = farthest_moves(move, side);
     if (beginning(f) != Beginning::island) return std::nullopt;
-    const FirstMember start = bulge_start(f);
+    const FirstMember start = first_member(move, f, Beginning::island);
     if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
     if (f.distance < start.distance) continue;
     const auto found = root_on(f, start, f.distance, true);
@@ -219,11 +230,11 @@ std::optional<ExtremalMove> fastest_move_of_one_sign(const AxisMove& move) noexc
 ExtremalMove fastest_move(const AxisMove& move) noexcept {
   FarthestMoves f = farthest_moves(move, 1.0);
   Beginning kind = beginning(f);
-  FirstMember start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+  FirstMember start = first_member(move, f, kind);
   if (f.distance < start.distance) {  // the same start, mirrored
     f = farthest_moves(move, -1.0);
     kind = beginning(f);
-    start = kind == Beginning::dip ? dip_start(f) : bulge_start(f);
+    start = first_member(move, f, kind);
   }
   if (is_start(f, start, f.distance)) return in_order(f, start_move(f, start));
   if (const auto found = root_on(f, start, f.distance, kind == Beginning::island)) {

@@ -102,4 +102,8 @@ ExtremalMove mend(const AxisMove& move, const ExtremalMove& found) noexcept {
   return mended;
 }
 
+double excess_of(const AxisMove& move, const ExtremalMove& found) noexcept {
+  return misses_of(move, found.side, {found.rise, found.peak_hold, found.trough_hold, found.settle}).distance;
+}
+
 }  // namespace stillcut

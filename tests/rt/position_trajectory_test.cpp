@@ -103,6 +103,19 @@ TEST(PositionTrajectory, IsValidAndTakesAsLongBackwardsAndMirrored) {
   }
 }
 
+// Throwing a ball up: at the limit all the time, and far too short to change that.
+TEST(PositionTrajectory, IsPreciseWhereShortBesideItsAcceleration) {
+  MotionCases cases{17};
+  for (int i = 0; i < 20'000; ++i) {
+    const double a = cases.scale(2.0), jerk = cases.scale(2.0), share = 0.05 * std::pow(10.0, -5.0 * cases.unit());
+    const double v = share * a * a / jerk;
+    const AxisTask task{{0.0, v, -a}, {0.0, -v, -a}, symmetric_limits(1e3 * a * a / jerk, a, jerk)};
+    const PositionPlan found = plan(task);
+    ASSERT_EQ(fault_of(task, found.trajectory), "") << text(task);
+    ASSERT_NEAR(found.trajectory.duration(), 2 * v / a, 1e-9 * v / a) << text(task);
+  }
+}
+
 // Whatever admissible move is made at random, the plan to where it ended is not longer.
 TEST(PositionTrajectory, NoMoveFoundAtRandomIsShorter) {
   MotionCases cases{12};
