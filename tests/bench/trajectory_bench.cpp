@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMoves = 4096;
 constexpr double kReferenceTransform_us = 3.84;
 
-// As the reference's own benchmark draws them: normal states, uniform limits.
+// Normal states and uniform limits, like stratum A of the reference table.
 std::vector<AxisTask> random_tasks(std::size_t count) {
   std::mt19937_64 random{42};
   std::normal_distribution<double> position{0.0, 4.0}, dynamic{0.0, 0.8};
