@@ -141,11 +141,11 @@ double common_duration(const Interface& way, std::span<const AxisTask> tasks,
                        std::span<const AxisTrajectory> trajectories, double duration) noexcept {
   constexpr int kMostSteps = 300;
   int steps = 0;
+  AxisTrajectory brake;  // of the axis looked at
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       if (trajectories[i].duration() == duration) continue;  // its own least
-      AxisTrajectory brake;
       const AxisMove rest = way.begin(tasks[i], brake);
       if (brake.brake_duration() > 0) {  // the trajectory may have done without
         const double least = brake.duration() + way.fastest(rest).duration();
@@ -183,7 +183,7 @@ MotionPlan plan_together(const Interface& way, std::span<const AxisTask> tasks, 
     if (!way.finish(tasks[i], trajectories[i])) return failure(TrajectoryError::out_of_range, i);
     plan.duration = std::max(plan.duration, trajectories[i].duration());
   }
-  if (synchronization == Synchronization::none) return plan;
+  if (synchronization == Synchronization::none || tasks.size() < 2) return plan;
   plan.duration = common_duration(way, tasks, trajectories, plan.duration);
   if (!std::isfinite(plan.duration)) return failure(TrajectoryError::out_of_range, 0);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
