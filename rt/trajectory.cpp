@@ -39,6 +39,10 @@ const char* describe(TrajectoryError error) noexcept {
       return "the limits of acceleration and jerk must be above zero";
     case TrajectoryError::target_beyond_limit:
       return "the target acceleration is above the acceleration limit";
+    case TrajectoryError::target_velocity_beyond_limit:
+      return "the target velocity, or the one its acceleration starts from, is beyond the velocity limit";
+    case TrajectoryError::sizes_differ:
+      return "there are not as many trajectories as tasks";
     case TrajectoryError::out_of_range:
       return "the inputs are too far apart in scale";
   }

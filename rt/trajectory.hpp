@@ -30,10 +30,12 @@ struct MotionLimits {
 
 enum class TrajectoryError : std::uint8_t {
   none,
-  not_finite,           // an input is NaN or infinite
-  limit_not_positive,   // a limit is zero or negative
-  target_beyond_limit,  // the target's acceleration is above the limit: it cannot be reached within it
-  out_of_range          // inputs so far apart in scale that the move cannot be expressed in doubles
+  not_finite,                    // an input is NaN or infinite
+  limit_not_positive,            // a limit is zero or negative
+  target_beyond_limit,           // the target's acceleration is above the limit: it cannot be reached within it
+  target_velocity_beyond_limit,  // the target's velocity is, or the one from which its acceleration must start
+  sizes_differ,                  // not as many trajectories as tasks
+  out_of_range                   // inputs so far apart in scale that the move cannot be expressed in doubles
 };
 
 // A short reason, for the user's line.

@@ -15,6 +15,7 @@ void add_plant_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
+void add_trajectory_command(CLI::App& app);
 void add_tune_command(CLI::App& app);
 
 inline constexpr int kExitUsage = 2, kExitBadInput = 3, kExitComponentMissing = 4;

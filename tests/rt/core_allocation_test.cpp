@@ -1,8 +1,10 @@
-// Once built, the core takes nothing from the heap.
+// Once built, the core takes nothing from the heap; nor does the planning of moves.
 #include <gtest/gtest.h>
 
+#include "rt/synchronized_motion.hpp"
 #include "tests/count_allocations.hpp"
 #include "tests/rt/core_script.hpp"
+#include "tests/rt/motion_cases.hpp"
 
 namespace stillcut {
 namespace {
@@ -37,6 +39,26 @@ TEST(Core, AllocatesNothingAfterConstruction) {
   EXPECT_EQ(allocations, 0);
   EXPECT_GT(outputs, 50U);
   EXPECT_GT(core.outputs().size(), 20U);
+}
+
+TEST(SynchronizedMotion, AllocatesNothing) {
+  MotionCases cases{16};
+  constexpr std::size_t kAxes = 7;
+  std::vector<AxisTask> tasks;
+  for (std::size_t i = 0; i < 100 * kAxes; ++i) tasks.push_back(cases.next());
+  std::array<AxisTrajectory, kAxes> moves;
+  double sum = 0.0;
+  allocations = 0;
+  counting = true;
+  for (std::size_t i = 0; i < tasks.size(); i += kAxes) {
+    const auto axes = std::span(tasks).subspan(i, kAxes);
+    sum += plan_velocities(axes, moves, Synchronization::time).duration;
+    sum += plan_positions(axes, moves, Synchronization::time).duration + moves[0].at(0.5).velocity;
+    sum += plan_position(axes[0].start, axes[0].target, axes[0].limits).trajectory.duration();
+  }
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_TRUE(std::isfinite(sum));
 }
 
 }  // namespace
