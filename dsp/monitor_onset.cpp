@@ -93,7 +93,8 @@ bool Monitor::look_for_wild_chatter(std::size_t index, std::int64_t stamp_ns) no
   const SensorPath& path = sensors_[index].path;
   const bool wild = gate_.state() == State::cut && path.watch().common() > kWild;
   wild_hops_[index] = wild ? wild_hops_[index] + 1 : 0;
-  if (wild_hops_[index] < kWildHops || path.watch().candidates().empty()) return false;
+  const int enough = steady_s_ < kNewCut_s ? 2 * kWildHops : kWildHops;
+  if (wild_hops_[index] < enough || path.watch().candidates().empty()) return false;
   const LineCandidate& loudest = path.watch().candidates().front();
   const Tone tone = analyse_tone(path.watch().window(loudest.axis), path.sample_rate_hz(), loudest.frequency_hz);
   if (of_forced(path, tone) < kLeastOfForced) return false;
