@@ -34,4 +34,11 @@ struct LobeDiagram {
 
 static_assert(std::is_trivially_copyable_v<LobeDiagram>);
 
+// Depth limit at a speed (rad/s): the smaller of the two points beside it, 0 where every depth is unstable, +inf where
+// none is, NaN outside the diagram or without one. Constant time, fit for the loop.
+double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept;
+
+// Margin a_lim/a - 1 of a cut of axial depth a (m) at a speed; NaN unknown. Constant time, fit for the loop.
+double margin_at(const LobeDiagram& diagram, double speed, double axial_depth) noexcept;
+
 }  // namespace stillcut

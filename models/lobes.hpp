@@ -49,11 +49,4 @@ LobeDiagram compute_lobe_diagram(const Tool& tool, const Material& material, con
 // Fills in the modes that move most, as many as the diagram has room for, in rising frequency.
 void summarise_modes(std::span<const Mode> modes, LobeDiagram& diagram);
 
-// Depth limit at a speed (rad/s): the smaller of the two points beside it, 0 where every depth is unstable, +inf where
-// none is, NaN outside the diagram or without one. Constant time, fit for the loop.
-double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept;
-
-// Margin a_lim/a - 1 of a cut of axial depth a (m) at a speed; NaN unknown. Constant time, fit for the loop.
-double margin_at(const LobeDiagram& diagram, double speed, double axial_depth) noexcept;
-
 }  // namespace stillcut

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "dsp/numbers.hpp"
-#include "models/lobes.hpp"
+#include "models/lobe_diagram.hpp"
 
 namespace stillcut {
 namespace {

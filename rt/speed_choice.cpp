@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dsp/numbers.hpp"
-#include "models/lobes.hpp"
+#include "models/lobe_diagram.hpp"
 
 namespace stillcut {
 namespace {
