@@ -27,7 +27,9 @@ void DecayWatch::step(const LineWatch& watch, std::span<const ExpectedMode> mode
   const auto now = static_cast<std::size_t>(hops_) % kKept, one = (now + kKept - kHopsAWindow) % kKept,
              two = (now + 1) % kKept;  // the oldest that is kept
   ++hops_;
-  const float gain = std::max(1.0F / kDecayMemory, 1.0F / static_cast<float>(hops_));
+  const bool full = hops_ >= static_cast<int>(kKept);  // so that every correlation has both its windows
+  const float gain =
+      full ? std::max(1.0F / kDecayMemory, 1.0F / static_cast<float>(hops_ + 1 - static_cast<int>(kKept))) : 0.0F;
   for (std::size_t m = 0; m < modes_; ++m) {
     Heard& mode = heard_[m];
     const HannLine line{mode.frequency_hz / watch.bin_hz(), watch.window_length()};

@@ -19,7 +19,7 @@ namespace stillcut {
 
 struct ModeDecay {
   double frequency_hz = 0.0;  // the mode's; NaN: none could be measured
-  double per_s = 0.0;         // s; NaN: dies out within a window, or is lost in noise
+  double per_s = 0.0;         // 1/s; NaN: dies out within a window, or is lost in noise
 };
 
 class DecayWatch {
@@ -28,13 +28,13 @@ class DecayWatch {
 
   // The cut is another one: what was heard holds no longer.
   void forget() noexcept { hops_ = 0; }
-  // Looks at the newest window, once a hop. One thread; allocates nothing.
+  // Looks at the newest window, once a hop, at the first four modes in the watched band. One thread; allocates nothing.
   void step(const LineWatch& watch, std::span<const ExpectedMode> modes) noexcept;
   // Of the mode that decays slowest.
   [[nodiscard]] ModeDecay slowest() const noexcept;
 
  private:
-  static constexpr std::size_t kMostModes = 4, kHopsAWindow = 8, kKept = 2 * kHopsAWindow + 1;
+  static constexpr std::size_t kMostModes = 4, kHopsAWindow = LineWatch::kHopsAWindow, kKept = 2 * kHopsAWindow + 1;
   using Complex = std::complex<float>;
 
   struct Heard {

@@ -15,7 +15,7 @@ struct HannLine {
   std::size_t bin = 0;                          // the nearest
   float below = 0.0F, at = 0.0F, above = 0.0F;  // weights; a line of amplitude A at this place gives A
 
-  // at_bin: its place in bins, not nearer to an end than 1; window_length: samples of the transform.
+  // at_bin: its place in bins, at least 1 from both ends of the spectrum; window_length: samples of the transform.
   HannLine(double at_bin, int window_length) noexcept : bin{static_cast<std::size_t>(std::lround(at_bin))} {
     // sin(pi d) / (pi d (1 - d^2)) is the window's transform d bins from its middle.
     const double d = at_bin - static_cast<double>(bin), q = d * d * std::numbers::pi * std::numbers::pi;

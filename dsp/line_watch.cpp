@@ -29,6 +29,12 @@ int window_length(double sample_rate_hz, double duration_s) noexcept {
   return 8 * eighth;
 }
 
+bool near_a_mode(std::span<const ExpectedMode> modes, double frequency_hz, double share) noexcept {
+  return std::any_of(modes.begin(), modes.end(), [&](const ExpectedMode& mode) {
+    return std::abs(frequency_hz - mode.frequency_hz) < share * mode.frequency_hz;
+  });
+}
+
 LineWatch::LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings)
     : axes_{axes},
       length_{stillcut::window_length(sample_rate_hz, settings.window_s)},

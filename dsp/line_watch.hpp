@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <span>
 #include <vector>
 
@@ -22,6 +21,11 @@ struct ExpectedMode {
   double frequency_hz = 0.0;
   double damping_ratio = 0.0;
 };
+
+// Of a mode's frequency: where its regenerative chatter may stand.
+inline constexpr double kNearAMode = 0.2;
+// Within `share` of the frequency of one of them.
+bool near_a_mode(std::span<const ExpectedMode> modes, double frequency_hz, double share) noexcept;
 
 struct LineWatchSettings {
   double window_s = 0.025;
@@ -40,7 +44,7 @@ struct LineCandidate {
 
 class LineWatch {
  public:
-  static constexpr int kCandidates = 3;
+  static constexpr int kCandidates = 3, kHopsAWindow = 8;
   static constexpr int kWindowsKept = 4;
 
   LineWatch(int axes, double sample_rate_hz, const LineWatchSettings& settings);
@@ -100,7 +104,7 @@ class LineWatch {
   void set_prior(std::span<const ExpectedMode> modes, double margin) noexcept;
 
  private:
-  static constexpr int kHopsAWindow = 8, kHopsToStay = 2, kHopsToLearn = 32;
+  static constexpr int kHopsToStay = 2, kHopsToLearn = 32;
 
   void make_room() noexcept;
   void finish_hop() noexcept;

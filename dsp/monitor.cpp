@@ -17,8 +17,8 @@ constexpr double kBlindToEnd_s = 0.5;  // chatter out of sight for this long is 
 // Memory of the synchronous filter: short, so that a change of depth has left the residual after a few revolutions, and
 // chatter is not hidden behind it; a line 0.05 of an order off the spindle's passes all the same.
 constexpr double kFilterRevolutions = 4.0;
-constexpr double kOnOrder_hz = 3.0;         // nearer to an order a line cannot be told from it
 constexpr int kHopsToBelong = 16;           // half a release time
+constexpr double kSameMode = 0.01;          // by which a mode's frequency may drift before it is another
 constexpr double kFadedOrder = 0.1;         // of the largest power
 constexpr double kFaded = 0.1;              // of the largest amplitude of the episode
 constexpr int kFrequencyHops = 8;           // of the running mean of its frequency
@@ -59,9 +59,21 @@ void Monitor::add_speed(const SpindleReading& reading) noexcept {
 }
 
 void Monitor::expect(std::span<const ExpectedMode> modes, double margin) noexcept {
-  mode_count_ = std::min(modes.size(), kMaxModes);
-  std::copy_n(modes.begin(), mode_count_, modes_.begin());
-  for (Sensor& sensor : sensors_) sensor.path.watch().set_prior(modes.first(mode_count_), margin);
+  const std::size_t count = std::min(modes.size(), kMaxModes);
+  const bool same = std::equal(modes.begin(), modes.begin() + static_cast<std::ptrdiff_t>(count), modes_.begin(),
+                               modes_.begin() + static_cast<std::ptrdiff_t>(mode_count_),
+                               [](const ExpectedMode& a, const ExpectedMode& b) {
+                                 return std::abs(a.frequency_hz - b.frequency_hz) < kSameMode * b.frequency_hz;
+                               });
+  if (!same) {  // the watches of single modes begin anew
+    mode_count_ = count;
+    std::copy_n(modes.begin(), count, modes_.begin());
+    for (Sensor& sensor : sensors_) {
+      sensor.decay.forget();
+      if (!view_.chatter) sensor.orders.forget();
+    }
+  }
+  for (Sensor& sensor : sensors_) sensor.path.watch().set_prior(modes.first(count), margin);
 }
 
 void Monitor::add_samples(const SampleBlock& block) noexcept {
@@ -90,7 +102,7 @@ void Monitor::add_samples(const SampleBlock& block) noexcept {
 void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s) noexcept {
   Sensor& sensor = sensors_[index];
   view_.stamp_ns = newest_ns_ = std::max(newest_ns_, stamp_ns);
-  steady_s_ += step_s;
+  if (index == 0) steady_s_ += step_s;
   update_speed_doubts(stamp_ns, step_s);
   update_silence(stamp_ns, step_s);
   set_doubts(kGap | kSaturated | kStuck | kNotFinite, sensor.path.doubts(), stamp_ns, step_s);
@@ -149,11 +161,13 @@ void Monitor::follow_chatter(std::int64_t stamp_ns, double step_s) noexcept {
   const LineWatch& watch = path.watch();
   const double bin_hz = path.bin_hz();
   double ratio = watch.ratio_at(heard_hz_);
+  // Of the order that it stands on; NaN where none is followed.
+  const bool on_order = !was_free_ && view_.single_line;
   const double of_order =
-      was_free_ ? 0.0 : sensors_[chatter_sensor_].orders.ratio_at(heard_hz_) / settings_.watch.limit;
-  largest_order_ratio_ = std::max(largest_order_ratio_, of_order);
+      on_order ? sensors_[chatter_sensor_].orders.ratio_at(heard_hz_) / settings_.watch.limit : kNaN;
+  largest_order_ratio_ = std::fmax(largest_order_ratio_, of_order);
   const bool order_faded = of_order < kFadedOrder * largest_order_ratio_;
-  if (!order_faded) ratio = std::max(ratio, of_order);
+  if (!order_faded) ratio = std::fmax(ratio, of_order);
   // The line wanders, but it does not leap: a peak further off is another one, unless this one was out of sight.
   unseen_s_ += step_s;
   const double reach_hz = unseen_s_ > kOutOfSight_s ? 1.5 * bin_hz : kLargestStep_hz;
@@ -221,18 +235,14 @@ double Monitor::speed_at(std::int64_t stamp_ns) const noexcept {
 double Monitor::speed_uncertainty() const noexcept { return settings_.has_speed_signal ? speed_.uncertainty() : 0.0; }
 
 double Monitor::away_from_order(double frequency_hz) const noexcept {
-  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
-  return spindle_hz > 0.0 ? std::abs(std::remainder(frequency_hz, spindle_hz)) : frequency_hz;
+  return spindle_hz() > 0.0 ? std::abs(std::remainder(frequency_hz, spindle_hz())) : frequency_hz;
 }
 
 ChatterKind Monitor::name_kind(double frequency_hz) const noexcept {
   // Regenerative chatter stands near a mode of the structure (above it by tenths); far from all of them no name is
   // given.
-  bool near = mode_count_ == 0;
-  for (std::size_t m = 0; m < mode_count_; ++m) {
-    near = near || std::abs(frequency_hz - modes_[m].frequency_hz) < 0.2 * modes_[m].frequency_hz;
-  }
-  return near ? ChatterKind::regenerative : ChatterKind::unknown;
+  const bool expected = mode_count_ == 0 || near_a_mode(modes(), frequency_hz, kNearAMode);
+  return expected ? ChatterKind::regenerative : ChatterKind::unknown;
 }
 
 }  // namespace stillcut

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -99,7 +100,7 @@ class Monitor {
   [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
   bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void follow_orders(std::size_t sensor, bool trusted) noexcept;
-  void follow_decay(std::size_t sensor, bool trusted) noexcept;
+  void follow_decay(std::size_t sensor, bool able) noexcept;
   void look_for_forced_vibration(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   bool look_for_growing_order(std::size_t sensor, std::int64_t stamp_ns) noexcept;
   void look_for_standing_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
@@ -120,6 +121,8 @@ class Monitor {
                                  const Tone& tone) const noexcept;
   [[nodiscard]] bool stands_out_of_the_orders(const SensorPath& path, const LineCandidate& candidate,
                                               double spindle_hz) const noexcept;
+  [[nodiscard]] double spindle_hz() const noexcept { return view_.speed / (2.0 * std::numbers::pi); }
+  [[nodiscard]] std::span<const ExpectedMode> modes() const noexcept { return {modes_.data(), mode_count_}; }
   [[nodiscard]] double speed_at(std::int64_t stamp_ns) const noexcept;
   [[nodiscard]] double away_from_order(double frequency_hz) const noexcept;
   [[nodiscard]] ChatterKind name_kind(double frequency_hz) const noexcept;
@@ -131,6 +134,7 @@ class Monitor {
   void emit(std::int64_t stamp_ns, EventType type, ChatterKind kind, double frequency_hz, const char* note) noexcept;
 
   static constexpr std::size_t kMaxEvents = 64, kMaxModes = 16;
+  static constexpr double kOnOrder_hz = 3.0;      // nearer to an order a line cannot be told from it
   static constexpr double kLeastOfForced = 0.01;  // displacement over that of the forced vibration: less is no chatter
 
   MonitorSettings settings_;

@@ -11,10 +11,9 @@ namespace stillcut {
 namespace {
 
 constexpr double kLeastSteadiness = 0.08;  // of a line that has been there for more than the last quarter window
-constexpr double kBasePeak = 1.5, kNearAMode = 0.2, kSameLine_hz = 8.0, kMovesMore = 1.5;  // of base_line
+constexpr double kBasePeak = 1.5, kSameLine_hz = 8.0, kMovesMore = 1.5;  // of base_line
 constexpr double kAccelerationCounts = 0.03;
 constexpr double kLeastBefore = 0.25;               // amplitude one revolution before over that now
-constexpr double kFrequencyDoubt_hz = 3.0;          // closer to an order a line is on it, as far as can be told
 constexpr double kSettledRevolutions = 32.0;        // of constant speed and contact before a line on an order may count
 constexpr double kEvenFall = 2.0, kEvenRise = 6.0;  // of the whole vibration's power in the last quarter of a second
 constexpr std::int64_t kLongestSuspense_ns = 60'000'000;
@@ -34,15 +33,14 @@ double Monitor::of_forced(const SensorPath& path, const Tone& tone) const noexce
 // Chatter shows in a whole row of lines, a spindle order apart. The one that moves the tool most, near a mode that is
 // expected, is the chatter itself.
 Tone Monitor::base_line(const SensorPath& path, int axis, const Tone& heard) const noexcept {
-  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
-  const double least_apart_hz = std::max(kBasePeak * path.bin_hz(), spindle_hz);
+  const double least_apart_hz = std::max(kBasePeak * path.bin_hz(), spindle_hz());
   const auto moves = [](const Tone& tone) { return tone.amplitude / (tone.frequency_hz * tone.frequency_hz); };
   Tone base = heard;
-  for (std::size_t m = 0; m < mode_count_; ++m) {
-    const double mode_hz = modes_[m].frequency_hz;
+  for (const ExpectedMode& mode : modes()) {
+    const double mode_hz = mode.frequency_hz;
     if (std::abs(mode_hz - heard.frequency_hz) < least_apart_hz || !(mode_hz > settings_.watch.lowest_hz)) continue;
-    const double order = std::round((mode_hz - heard.frequency_hz) / spindle_hz);
-    const double near_hz = heard.frequency_hz + order * spindle_hz;
+    const double order = std::round((mode_hz - heard.frequency_hz) / spindle_hz());
+    const double near_hz = heard.frequency_hz + order * spindle_hz();
     if (order == 0.0 || std::abs(near_hz - mode_hz) > kNearAMode * mode_hz) continue;
     const Tone tone = analyse_tone(path.watch().window(axis), path.sample_rate_hz(), near_hz);
     if (std::abs(tone.frequency_hz - near_hz) < kSameLine_hz && moves(tone) > kMovesMore * moves(base)) base = tone;
@@ -75,7 +73,7 @@ Monitor::Suspect Monitor::classify(const SensorPath& path, const LineCandidate& 
   const double spindle_hz = speed / (2.0 * std::numbers::pi);
   const double orders = tone.frequency_hz / spindle_hz;
   const double speed_error = 2.0 * orders * speed_uncertainty() / speed;  // in cycles of the line
-  double allowed = kFrequencyDoubt_hz / spindle_hz + speed_error;
+  double allowed = kOnOrder_hz / spindle_hz + speed_error;
   if (revolution_ns(speed) < watch.longest_lag_s() * 1e9) {
     const double noise = 0.25 / std::sqrt(std::max(1.0, candidate.ratio * settings_.watch.limit));
     const Recurrence turned = recurrence(watch.kept(candidate.axis), watch.window_length(), path.sample_rate_hz(),

@@ -137,7 +137,9 @@ void Monitor::look_for_standing_chatter(std::size_t index, std::int64_t stamp_ns
 
 void Monitor::begin_chatter(std::size_t index, std::int64_t stamp_ns, const LineCandidate& candidate,
                             const Tone& heard) noexcept {
-  const Line line = std::exchange(suspect_[index], {}).line;
+  const Line line = suspect_[index].line;
+  suspect_ = standing_ = {};
+  wild_hops_ = {};
   const Tone tone = line == Line::free ? base_line(sensors_[index].path, candidate.axis, heard) : heard;
   if (gate_.contact() == CutGate::Change::entered) {
     emit(stamp_ns, EventType::cut_entry, ChatterKind::unknown, kNaN, "told by chatter");

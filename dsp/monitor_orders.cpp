@@ -32,11 +32,10 @@ double share_of_order(const SensorPath& path, int order) noexcept {
 
 void Monitor::follow_orders(std::size_t index, bool trusted) noexcept {
   Sensor& sensor = sensors_[index];
-  const SensorPath& path = sensor.path;
-  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
-  const double hop_s = path.watch().hop_length() / path.sample_rate_hz();
-  const bool held = gate_.state() != State::cut && gate_.state() != State::air;
-  if (!trusted || held || steady_s_ * spindle_hz < kRevolutionsToSettle) {
+  SensorPath& path = sensor.path;
+  const bool judged = gate_.state() == State::cut || gate_.state() == State::air;
+  const bool settled = steady_s_ * spindle_hz() >= kRevolutionsToSettle;
+  if (path.take_table_change() || !trusted || !judged || !settled) {
     sensor.orders.forget();
     sensor.hops_to_orders = kHopsAStep;
     return;
@@ -44,18 +43,21 @@ void Monitor::follow_orders(std::size_t index, bool trusted) noexcept {
   if (--sensor.hops_to_orders > 0) return;
   sensor.hops_to_orders = kHopsAStep;
   sensor.orders.follow(view_.chatter ? heard_hz_ : kNaN);
+  // path.angle() is that of the newest sample, the last of the window.
+  const double rate_hz = path.sample_rate_hz(), since_middle_s = 0.5 / path.bin_hz() - 1.0 / rate_hz;
+  const double step_s = kHopsAStep * path.watch().hop_length() / rate_hz;
   sensor.orders.step(
-      path.watch(), path.filter(), {modes_.data(), mode_count_},
-      {spindle_hz, path.angle() - 0.5 * spindle_hz / path.bin_hz(), kHopsAStep * hop_s * spindle_hz, settings_.teeth},
+      path.watch(), path.filter(), modes(),
+      {spindle_hz(), path.angle() - spindle_hz() * since_middle_s, step_s * spindle_hz(), settings_.teeth},
       settings_.watch.limit);
 }
 
 bool Monitor::look_for_growing_order(std::size_t index, std::int64_t stamp_ns) noexcept {
   const SensorPath& path = sensors_[index].path;
-  if (steady_s_ * view_.speed < 2.0 * std::numbers::pi * kRevolutionsToJudge || path.fall() > kFalls) return false;
+  if (steady_s_ * spindle_hz() < kRevolutionsToJudge || path.fall() > kFalls) return false;
   if (gate_.state() == State::air && path.rise() > kRises) return false;
   const OrderLine line = sensors_[index].orders.grown(path.filter());
-  if (!(line.frequency_hz > 0.0) || (settings_.teeth > 1 && line.order % settings_.teeth == 0)) return false;
+  if (!(line.frequency_hz > 0.0)) return false;
   const LineCandidate candidate{line.frequency_hz, line.ratio / settings_.watch.limit, line.axis};
   const Tone tone{.frequency_hz = line.frequency_hz, .amplitude = line.amplitude};
   if (of_forced(path, tone) < kLeastOfForced) return false;
@@ -76,16 +78,16 @@ void Monitor::look_for_forced_vibration(std::size_t index, std::int64_t stamp_ns
   until_forced_s_ -= step_s;
   if (until_forced_s_ > 0.0 || view_.chatter) return;
   until_forced_s_ = kForcedEvery_s;
-  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
+  if (steady_s_ * spindle_hz() < kRevolutionsToSettle) return;
   int strongest = 0;
-  double most = kForcedShare;
-  for (std::size_t m = 0; m < mode_count_ && spindle_hz > 0.0; ++m) {
-    const ExpectedMode& mode = modes_[m];
-    const auto order = static_cast<int>(std::lround(mode.frequency_hz / spindle_hz));
+  double most = 0.0;
+  for (const ExpectedMode& mode : modes()) {
+    const auto order = static_cast<int>(std::lround(mode.frequency_hz / spindle_hz()));
     const double reach_hz = std::max(kOnMode_hz, mode.damping_ratio * mode.frequency_hz);
-    if (order < 1 || std::abs(order * spindle_hz - mode.frequency_hz) > reach_hz) continue;
+    if (order < 1 || std::abs(order * spindle_hz() - mode.frequency_hz) > reach_hz) continue;
     const double share = share_of_order(sensors_[index].path, order);
-    if (share < (order == forced_order_ ? 0.5 : 1.0) * most) continue;
+    const double least = order == forced_order_ ? 0.5 * kForcedShare : kForcedShare;
+    if (share < least || share <= most) continue;
     most = share;
     strongest = order;
   }
@@ -94,19 +96,17 @@ void Monitor::look_for_forced_vibration(std::size_t index, std::int64_t stamp_ns
     std::snprintf(note, sizeof note,
                   "order %d stands on a mode, %.0f %% of the vibration; a speed 1-2 %% off would tell", strongest,
                   100.0 * std::min(1.0, most));
-    emit(stamp_ns, EventType::forced_vibration, ChatterKind::unknown, strongest * spindle_hz, note);
+    emit(stamp_ns, EventType::forced_vibration, ChatterKind::unknown, strongest * spindle_hz(), note);
   }
   forced_order_ = strongest;
 }
 
 void Monitor::follow_decay(std::size_t index, bool able) noexcept {
-  Sensor& sensor = sensors_[index];
   if (!able || view_.chatter || gate_.state() != State::cut) {
-    sensor.decay.forget();
+    for (Sensor& each : sensors_) each.decay.forget();
   } else {
-    sensor.decay.step(sensor.path.watch(), {modes_.data(), mode_count_});
+    sensors_[index].decay.step(sensors_[index].path.watch(), modes());
   }
-  if (index != 0) return;
   view_.decay_per_s = view_.decay_frequency_hz = kNaN;
   for (const Sensor& each : sensors_) {
     const ModeDecay slowest = each.decay.slowest();

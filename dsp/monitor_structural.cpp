@@ -29,9 +29,8 @@ void Monitor::listen_to_structure(std::size_t index, std::int64_t stamp_ns, bool
     slow.forget_evidence();
     return;
   }
-  const double spindle_hz = view_.speed / (2.0 * std::numbers::pi);
-  const SlowLine line = slow.best_line([spindle_hz](double hz) {
-    const double order_hz = spindle_hz * std::max(1.0, std::round(hz / spindle_hz));
+  const SlowLine line = slow.best_line([turns_hz = spindle_hz()](double hz) {
+    const double order_hz = turns_hz * std::max(1.0, std::round(hz / turns_hz));
     return std::abs(hz - order_hz) > kOfOrder * hz;
   });
   if (line.evidence < structural_evidence_asked(sensors_[index].path, line.frequency_hz)) return;
@@ -47,11 +46,8 @@ void Monitor::listen_to_structure(std::size_t index, std::int64_t stamp_ns, bool
 // A map knows where the robot's modes are; and a tool that leaves the cut now and then shakes the robot as well.
 double Monitor::structural_evidence_asked(const SensorPath& path, double frequency_hz) const noexcept {
   if (mode_count_ == 0) return kNoMapAsks;
-  for (std::size_t m = 0; m < mode_count_; ++m) {
-    const double mode_hz = modes_[m].frequency_hz;
-    if (std::abs(frequency_hz - mode_hz) < kNearStructure * mode_hz) {
-      return path.fall() > kFallToDoubtStructure ? kDoubtfulAsks : 1.0;
-    }
+  if (near_a_mode(modes(), frequency_hz, kNearStructure)) {
+    return path.fall() > kFallToDoubtStructure ? kDoubtfulAsks : 1.0;
   }
   return kUnexpectedAsks;
 }

@@ -11,19 +11,20 @@ namespace stillcut {
 namespace {
 
 constexpr double kOrderMemory = 32.0;  // revolutions, of what an order was
-constexpr double kNearExpected = 0.2;
+constexpr double kSameSpeed = 0.01;
 constexpr int kMostForced = 8;      // orders of the teeth
 constexpr double kApartBins = 2.5;  // nearer ones share a window's bins
 constexpr int kOrderStepsToLearn = 32;
 constexpr float kOrderFloorMemory = 160.0F;  // steps
 constexpr float kOrderFloorClip = 4.0F;
-constexpr float kOrderGrows = 1.25F;  // power over that of kSteps - 1 before
+constexpr float kOrderGrows = 1.25F;  // power over that of kFastSteps or kSlowSteps before
 constexpr float kOrderHolds = 0.9F;   // and over the most since it was suspected
 // While the orders of the teeth change by more than they usually do, and by more than this share of what the suspect
 // has moved, it is the cut that changes.
 constexpr float kUsual = 2.5F, kForcedStands = 0.03F;
 constexpr float kStandsOut = 4.0F;  // over the largest ratio of those orders: they have not moved lately
-constexpr float kBeyond = 2.5F, kBeyondAlone = 1.5F;
+constexpr float kBeyond = 2.0F;
+constexpr double kMostOff = 0.4;   // of an order's distance to the next
 constexpr float kTurnGain = 0.3F;  // a step
 constexpr int kMostOrderEvidence = 32;
 constexpr std::size_t kFastSteps = 5, kSlowSteps = 9;
@@ -32,12 +33,6 @@ constexpr float kSlowTrendSmoothing = 0.3F, kSlowTrendLimit = 0.5F;
 constexpr int kEnoughFast = 5, kEnoughAfterChange = 8, kEnoughSlow = 14;
 
 using Complex = std::complex<float>;
-
-bool near_any(std::span<const ExpectedMode> modes, double hz) noexcept {
-  return modes.empty() || std::any_of(modes.begin(), modes.end(), [hz](const ExpectedMode& mode) {
-           return std::abs(hz - mode.frequency_hz) < kNearExpected * mode.frequency_hz;
-         });
-}
 
 }  // namespace
 
@@ -48,13 +43,13 @@ void OrderWatch::forget() noexcept {
 
 void OrderWatch::choose(const LineWatch& watch, std::span<const ExpectedMode> modes, const Turning& turning) noexcept {
   watched_ = 0;
-  spindle_hz_ = turning.spindle_hz;
   const int teeth = std::max(1, turning.teeth);
-  const auto last = static_cast<int>(watch.highest_hz() / spindle_hz_);
+  const auto last = static_cast<int>(watch.highest_hz() / ((1.0 + kSameSpeed) * turning.spindle_hz));
   int forced = 0;
   for (int order = 1; order <= last && watched_ < kMostOrders; ++order) {
-    const double hz = order * spindle_hz_;
-    const bool near = hz > watch.lowest_hz() && near_any(modes, hz);
+    const double hz = order * turning.spindle_hz;
+    const bool callable = teeth == 1 || order % teeth != 0;
+    const bool near = callable && hz > watch.lowest_hz() && (modes.empty() || near_a_mode(modes, hz, kNearAMode));
     const bool of_teeth = order % teeth == 0 && hz > 2.0 * watch.bin_hz() && forced < kMostForced;
     if (!near && !of_teeth) continue;
     Order& next = orders_[watched_++] = {};
@@ -71,9 +66,12 @@ float OrderWatch::gain() const noexcept {
 
 void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, std::span<const ExpectedMode> modes,
                       const Turning& turning, double limit) noexcept {
+  if (std::abs(turning.spindle_hz - spindle_hz_) > kSameSpeed * spindle_hz_) forget();
   if (steps_ == 0) choose(watch, modes, turning);
+  spindle_hz_ = turning.spindle_hz;
   ++steps_;
   step_s_ = turning.revolutions / turning.spindle_hz;
+  bin_hz_ = watch.bin_hz();
   held_ = !std::isnan(followed_hz_);
   // By the angle that each order has turned: powers of the spindle's own turn.
   const std::complex<double> once = std::polar(1.0, -2.0 * std::numbers::pi * turning.angle);
@@ -86,7 +84,7 @@ void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, s
   for (std::size_t n = 0; n < watched_; ++n) {
     Order& order = orders_[n];
     if (!order.near_mode) continue;
-    const float forced = forced_changes(order, watch.bin_hz());
+    const float forced = forced_changes(order);
     judge(order.fast, kFastSteps, static_cast<float>(limit), forced);
     judge(order.slow, kSlowSteps, kSlowTrendLimit * static_cast<float>(limit), kSlowForced * forced);
   }
@@ -148,12 +146,16 @@ void OrderWatch::judge(Trend& trend, std::size_t steps, float limit, float force
   trend.evidence = std::clamp(trend.evidence + (grows ? 1 : holds ? 0 : -1), 0, kMostOrderEvidence);
 }
 
-float OrderWatch::forced_changes(const Order& but, double bin_hz) const noexcept {
+// The teeth force it, and it shares no bins with the other.
+bool OrderWatch::forced_apart(const Order& order, const Order& from) const noexcept {
+  return order.forced && std::abs(order.order - from.order) * spindle_hz_ > kApartBins * bin_hz_;
+}
+
+float OrderWatch::forced_changes(const Order& but) const noexcept {
   float sum = 0.0F;
   for (std::size_t n = 0; n < watched_; ++n) {
     const Order& order = orders_[n];
-    const bool apart = std::abs(order.order - but.order) * spindle_hz_ > kApartBins * bin_hz;
-    if (order.forced && apart) sum += std::max(0.0F, order.changes - kUsual * order.usual_changes);
+    if (forced_apart(order, but)) sum += std::max(0.0F, order.changes - kUsual * order.usual_changes);
   }
   return sum;
 }
@@ -161,16 +163,16 @@ float OrderWatch::forced_changes(const Order& but, double bin_hz) const noexcept
 float OrderWatch::forced_ratio(const Order& but, Trend Order::*trend) const noexcept {
   float most = 0.0F;
   for (std::size_t n = 0; n < watched_; ++n) {
-    if (orders_[n].forced && orders_[n].order != but.order) most = std::max(most, (orders_[n].*trend).ratio());
+    if (forced_apart(orders_[n], but)) most = std::max(most, (orders_[n].*trend).ratio());
   }
   return most;
 }
 
 // A deeper cut makes forced orders larger, in proportion and somewhat beyond.
-bool OrderWatch::beyond_what_it_was(const Order& order, float times, const SynchronousFilter& filter) const noexcept {
+bool OrderWatch::beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept {
   float before = 0.0F;
   for (int a = 0; a < axes_; ++a) before += std::norm(filter.content(order.order, a) - order.learned[a]);
-  return order.fast.power[0] > times * times * before;
+  return order.fast.power[0] > kBeyond * kBeyond * before;
 }
 
 OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
@@ -184,12 +186,14 @@ OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
     const bool alone_enough = (order.fast.evidence >= kEnoughFast && alone(&Order::fast)) ||
                               (order.slow.evidence >= kEnoughSlow && alone(&Order::slow));
     const bool enough = alone_enough || order.fast.evidence >= kEnoughAfterChange;
-    if (!enough || !beyond_what_it_was(order, alone_enough ? kBeyondAlone : kBeyond, filter)) continue;
+    if (!enough || !beyond_what_it_was(order, filter)) continue;
     int axis = 0;
     for (int a = 1; a < axes_; ++a) {
       if (std::norm(order.slow.u[a]) > std::norm(order.slow.u[axis])) axis = a;
     }
-    const double off_hz = std::arg(order.turn) / (2.0 * std::numbers::pi * step_s_);
+    const double most_off_hz = kMostOff * spindle_hz_;
+    const double off_hz =
+        std::clamp(std::arg(order.turn) / (2.0 * std::numbers::pi * step_s_), -most_off_hz, most_off_hz);
     line = {order.order * spindle_hz_ + off_hz, order.order, axis, order.fast.ratio(), std::sqrt(order.fast.power[0])};
   }
   return line;
@@ -197,9 +201,10 @@ OrderLine OrderWatch::grown(const SynchronousFilter& filter) const noexcept {
 
 double OrderWatch::ratio_at(double frequency_hz) const noexcept {
   for (std::size_t n = 0; n < watched_; ++n) {
-    if (orders_[n].order == std::lround(frequency_hz / spindle_hz_)) return orders_[n].fast.ratio();
+    const Order& order = orders_[n];
+    if (order.order == std::lround(frequency_hz / spindle_hz_) && order.fast.floor > 0.0F) return order.fast.ratio();
   }
-  return 0.0;
+  return kNaN;
 }
 
 }  // namespace stillcut

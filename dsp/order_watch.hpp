@@ -41,14 +41,16 @@ class OrderWatch {
 
   // Speed or contact have changed: what was learned holds no longer.
   void forget() noexcept;
-  // Looks at the newest window. Orders near `modes` are watched, all where none is given. An order counts as growing
+  // Looks at the newest window. Orders near `modes` are watched, where none is given the lowest 32; those of several
+  // teeth are never called. An order counts as growing
   // while its power stands `limit` times over its floor. One thread; allocates nothing.
   void step(const LineWatch& watch, const SynchronousFilter& filter, std::span<const ExpectedMode> modes,
             const Turning& turning, double limit) noexcept;
 
   // The strongest of the orders that have grown for long enough.
   [[nodiscard]] OrderLine grown(const SynchronousFilter& filter) const noexcept;
-  // Power of u over its floor of the order nearest to a frequency; 0: it is not watched.
+  // Power of u over its floor of the order nearest to a frequency; NaN: it is not watched, or not for
+  // long enough.
   [[nodiscard]] double ratio_at(double frequency_hz) const noexcept;
   // While chatter is followed at a frequency what its order was is kept, and floors with it. NaN: no chatter.
   void follow(double frequency_hz) noexcept { followed_hz_ = frequency_hz; }
@@ -79,16 +81,16 @@ class OrderWatch {
             const Turning& turning) noexcept;
   void smooth(Trend& trend, float smoothing, const std::array<std::complex<float>, kMaxAxes>& u) noexcept;
   void judge(Trend& trend, std::size_t steps, float limit, float forced_changes) noexcept;
-  [[nodiscard]] float forced_changes(const Order& but, double bin_hz) const noexcept;
+  [[nodiscard]] bool forced_apart(const Order& order, const Order& from) const noexcept;
+  [[nodiscard]] float forced_changes(const Order& but) const noexcept;
   [[nodiscard]] float forced_ratio(const Order& but, Trend Order::*trend) const noexcept;
-  [[nodiscard]] bool beyond_what_it_was(const Order& order, float times,
-                                        const SynchronousFilter& filter) const noexcept;
+  [[nodiscard]] bool beyond_what_it_was(const Order& order, const SynchronousFilter& filter) const noexcept;
   [[nodiscard]] float gain() const noexcept;
 
   int axes_;
   std::array<Order, kMostOrders> orders_{};
   std::size_t watched_ = 0;
-  double spindle_hz_ = 0.0, step_s_ = 0.0;
+  double spindle_hz_ = 0.0, step_s_ = 0.0, bin_hz_ = 0.0;
   int steps_ = 0;
   double followed_hz_ = kNaN;
   bool held_ = false;

@@ -95,7 +95,7 @@ void SensorPath::follow_mean(std::span<const Lanes> x, std::span<Lanes> alternat
 int SensorPath::process(const SampleBlock& block, int from, double speed) noexcept {
   const bool turning = speed > kSlowestTurning;
   const double revolution_s = turning ? 2.0 * std::numbers::pi / speed : 0.0;
-  if (turning) filter_.set_samples_per_revolution(rate_ * revolution_s);
+  if (turning && filter_.set_samples_per_revolution(rate_ * revolution_s)) table_changed_ = true;
   hop_complete_ = false;
   const int to = std::min<int>(block.samples, from + watch_.to_hop());
   if (to <= from) return from;

@@ -57,6 +57,8 @@ class SensorPath {
   [[nodiscard]] SynchronousFilter& filter() noexcept { return filter_; }
   [[nodiscard]] const SynchronousFilter& filter() const noexcept { return filter_; }
   [[nodiscard]] double sample_rate_hz() const noexcept { return rate_; }
+  // True once after what the filter knew was lost, as its table had to get another size.
+  bool take_table_change() noexcept { return std::exchange(table_changed_, false); }
   [[nodiscard]] int axes() const noexcept { return axes_; }
   // Spindle angle at the newest sample, revolutions, 0 to 1.
   [[nodiscard]] double angle() const noexcept { return revolutions_; }
@@ -92,7 +94,7 @@ class SensorPath {
   double level_ = 0.0, synchronous_level_ = 0.0, fall_ = 1.0, rise_ = 1.0;
   std::int64_t samples_ = 0;                               // processed so far
   std::array<std::int64_t, kDoubtCount> doubted_until_{};  // the sample at which each doubt has left the window
-  bool hop_complete_ = false, slow_stepped_ = false;
+  bool hop_complete_ = false, slow_stepped_ = false, table_changed_ = false;
 };
 
 }  // namespace stillcut

@@ -158,7 +158,7 @@ double SynchronousFilter::displacement(double speed) const noexcept {
 // The Fourier coefficient of the knots, times what a cubic B-spline makes of it. The spline of c_k stands over knot k
 // - 1.
 std::complex<float> SynchronousFilter::content(int order, int axis) const noexcept {
-  if (knots_ == 0) return {};
+  if (2 * order >= knots_) return {};
   const double radians = 2.0 * std::numbers::pi * order / knots_, half = 0.5 * radians;
   const std::complex<double> turn = std::polar(1.0, -radians);
   std::complex<double> phasor = std::conj(turn), sum;

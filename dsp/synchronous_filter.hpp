@@ -50,7 +50,8 @@ class SynchronousFilter {
   // How far what repeats moves the sensor: its acceleration integrated twice over the angle, root mean square of all
   // axes together, times the square of the speed (rad/s) that it turns with; m, for samples in m/s^2.
   [[nodiscard]] double displacement(double speed) const noexcept;
-  // What repeats `order` times a revolution: its complex amplitude, the phase at angle 0, in units of the samples.
+  // What repeats `order` times a revolution: its complex amplitude, the phase at angle 0, in units of the samples; 0
+  // beyond half the knots.
   [[nodiscard]] std::complex<float> content(int order, int axis) const noexcept;
   // Mean of the repeating part over a revolution: gravity and whatever else is slower than the spindle. The residual
   // plus this mean is the signal without the spindle's orders, and with what lies below them.

@@ -41,7 +41,7 @@ Heard listen(double spindle_hz, int order, double off_hz, double growth_per_s, s
     float residual = 0.0F;
     filter.process(turns - std::floor(turns), {&x, 1}, {&residual, 1});
     if (!lines.push(std::span<const float>{&residual, 1}) || ++hops % 2 != 0 || hops < 32) continue;
-    const double hop_s = lines.hop_length() / kRate_hz, middle_s = t - 0.5 / lines.bin_hz();
+    const double hop_s = lines.hop_length() / kRate_hz, middle_s = t - 0.5 / lines.bin_hz() + 1.0 / kRate_hz;
     orders.step(lines, filter, {&mode, 1}, {spindle_hz, spindle_hz * middle_s, 2.0 * hop_s * spindle_hz, 2}, 12.0);
     if (const OrderLine line = orders.grown(filter); line.ratio > kLoud) return {line, amplitude(middle_s)};
   }
