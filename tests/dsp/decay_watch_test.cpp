@@ -117,6 +117,36 @@ TEST(Monitor, TellsForcedVibrationOnAModeOnceAndNeverCallsItRegenerative) {
   EXPECT_TRUE(only(events, EventType::chatter_onset).empty());
 }
 
+TEST(Monitor, ForgetsTheDecayOfModesThatAreNoLongerExpected) {
+  SyntheticCut cut;
+  cut.duration_s = 3.0;
+  cut.rate_hz = kRate_hz;
+  SyntheticLog log = record(cut);
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  const std::complex<double> turn = std::exp(std::complex<double>{-4.0, 2.0 * std::numbers::pi * 712.0} / kRate_hz);
+  std::complex<double> z;
+  for (SampleBlock& block : log.blocks) {
+    for (int i = 0; i < block.samples; ++i) {
+      z = z * turn + 0.01 * normal(random);
+      block.acceleration[0][static_cast<std::size_t>(i)] += static_cast<float>(z.real());
+    }
+  }
+  Monitor monitor{monitor_settings(cut)};
+  const ExpectedMode near{715.0, 0.02}, far{1500.0, 0.02};
+  monitor.expect({&near, 1}, kNaN);
+  bool moved = false;
+  double before = kNaN, after = 0.0;
+  play(log, monitor, [&](const MonitorView& view) {
+    const double t = static_cast<double>(view.stamp_ns - kSyntheticOrigin_ns) * 1e-9;
+    if (t < 2.4) before = view.decay_per_s;
+    if (t >= 2.4 && !moved) monitor.expect({&far, 1}, kNaN), moved = true;
+    after = view.decay_per_s;
+  });
+  EXPECT_TRUE(std::isfinite(before));
+  EXPECT_TRUE(std::isnan(after));
+}
+
 TEST(Monitor, TellsNoForcedVibrationWhereNoModeIsNear) {
   const SyntheticCut cut = forced_on_a_mode();
   Monitor monitor{monitor_settings(cut)};
