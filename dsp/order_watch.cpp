@@ -11,7 +11,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kOrderMemory = 32.0;  // revolutions, of what an order was
-constexpr double kSameSpeed = 0.01;
+constexpr double kSpeedHolds = 0.01;
 constexpr int kMostForced = 8;      // orders of the teeth
 constexpr double kApartBins = 2.5;  // nearer ones share a window's bins
 constexpr int kOrderStepsToLearn = 32;
@@ -44,7 +44,7 @@ void OrderWatch::forget() noexcept {
 void OrderWatch::choose(const LineWatch& watch, std::span<const ExpectedMode> modes, const Turning& turning) noexcept {
   watched_ = 0;
   const int teeth = std::max(1, turning.teeth);
-  const auto last = static_cast<int>(watch.highest_hz() / ((1.0 + kSameSpeed) * turning.spindle_hz));
+  const auto last = static_cast<int>(watch.highest_hz() / ((1.0 + kSpeedHolds) * turning.spindle_hz));
   int forced = 0;
   for (int order = 1; order <= last && watched_ < kMostOrders; ++order) {
     const double hz = order * turning.spindle_hz;
@@ -66,7 +66,7 @@ float OrderWatch::gain() const noexcept {
 
 void OrderWatch::step(const LineWatch& watch, const SynchronousFilter& filter, std::span<const ExpectedMode> modes,
                       const Turning& turning, double limit) noexcept {
-  if (std::abs(turning.spindle_hz - spindle_hz_) > kSameSpeed * spindle_hz_) forget();
+  if (std::abs(turning.spindle_hz - spindle_hz_) > kSpeedHolds * spindle_hz_) forget();
   if (steps_ == 0) choose(watch, modes, turning);
   spindle_hz_ = turning.spindle_hz;
   ++steps_;
