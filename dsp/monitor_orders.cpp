@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "dsp/monitor.hpp"
 #include "dsp/numbers.hpp"

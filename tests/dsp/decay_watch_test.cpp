@@ -14,21 +14,30 @@ namespace {
 
 constexpr double kRate_hz = 10000.0;
 
-// A mode that white noise keeps ringing, in white noise of its own, rms over rms.
+// A mode of rms 1 that white noise keeps ringing.
+struct RingingMode {
+  std::complex<double> turn, z;
+
+  RingingMode(double hz, double decay_per_s)
+      : turn{std::exp(std::complex<double>{-decay_per_s, 2.0 * std::numbers::pi * hz} / kRate_hz)} {}
+  double next(double white) {
+    z = z * turn + std::sqrt(1.0 - std::norm(turn)) * white;
+    return z.real();
+  }
+};
+
+// What the watch says of such a mode in white noise of its own, rms over rms.
 ModeDecay measured(double hz, double decay_per_s, double noise, std::uint32_t seed) {
   std::mt19937 random{seed};
   std::normal_distribution<double> normal;
   LineWatch lines{1, kRate_hz, {}};
   DecayWatch decay{1};
   const ExpectedMode mode{hz * 1.01, 0.02};  // the map's, a little off
-  const std::complex<double> turn =
-      std::exp(std::complex<double>{-decay_per_s, 2.0 * std::numbers::pi * hz} / kRate_hz);
-  const double drive = std::sqrt(1.0 - std::norm(turn));
-  std::complex<double> z;
+  RingingMode ringing{hz, decay_per_s};
   int hops = 0;
   for (long n = 0; n < static_cast<long>(5.0 * kRate_hz); ++n) {
-    z = z * turn + drive * normal(random);
-    const auto x = static_cast<float>(z.real() + noise * normal(random));
+    const double heard = ringing.next(normal(random));
+    const auto x = static_cast<float>(heard + noise * normal(random));
     if (lines.push(std::span<const float>{&x, 1}) && ++hops > 8) decay.step(lines, {&mode, 1});
   }
   return decay.slowest();
@@ -56,26 +65,28 @@ TEST(DecayWatch, SaysThatItCannotTellInNoiseAndOfAWellDampedMode) {
   }
 }
 
-// A sound cut in which a mode of 712 Hz rings in the noise of the force, slower and slower to die out.
+// A recorded sound cut in which a mode of 712 Hz rings in the noise of the force, alike on every axis.
+SyntheticLog with_ringing_mode(const SyntheticCut& cut, double decay_per_s, double rms) {
+  SyntheticLog log = record(cut);
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  RingingMode mode{712.0, decay_per_s};
+  for (SampleBlock& block : log.blocks) {
+    for (std::size_t i = 0; i < block.samples; ++i) {
+      const auto heard = static_cast<float>(rms * mode.next(normal(random)));
+      for (auto& axis : block.acceleration) axis[i] += heard;
+    }
+  }
+  return log;
+}
+
 TEST(Monitor, ShowsAFadingMarginBeforeAnythingIsChatter) {
   double before = kInfinity;
   for (const double decay_per_s : {16.0, 8.0, 4.0}) {
     SyntheticCut cut;
     cut.duration_s = 4.0;
     cut.rate_hz = kRate_hz;
-    SyntheticLog log = record(cut);
-    std::mt19937 random{5};
-    std::normal_distribution<double> normal;
-    const std::complex<double> turn =
-        std::exp(std::complex<double>{-decay_per_s, 2.0 * std::numbers::pi * 712.0} / kRate_hz);
-    const double drive = 0.5 * std::sqrt(1.0 - std::norm(turn));
-    std::complex<double> z;
-    for (SampleBlock& block : log.blocks) {
-      for (int i = 0; i < block.samples; ++i) {
-        z = z * turn + drive * normal(random);
-        for (int a = 0; a < cut.axes; ++a) block.acceleration[a][i] += static_cast<float>(z.real());
-      }
-    }
+    const SyntheticLog log = with_ringing_mode(cut, decay_per_s, 0.5);
     Monitor monitor{monitor_settings(cut)};
     const ExpectedMode mode{720.0, 0.02};
     monitor.expect({&mode, 1}, kNaN);
@@ -121,17 +132,7 @@ TEST(Monitor, ForgetsTheDecayOfModesThatAreNoLongerExpected) {
   SyntheticCut cut;
   cut.duration_s = 3.0;
   cut.rate_hz = kRate_hz;
-  SyntheticLog log = record(cut);
-  std::mt19937 random{5};
-  std::normal_distribution<double> normal;
-  const std::complex<double> turn = std::exp(std::complex<double>{-4.0, 2.0 * std::numbers::pi * 712.0} / kRate_hz);
-  std::complex<double> z;
-  for (SampleBlock& block : log.blocks) {
-    for (int i = 0; i < block.samples; ++i) {
-      z = z * turn + 0.01 * normal(random);
-      block.acceleration[0][static_cast<std::size_t>(i)] += static_cast<float>(z.real());
-    }
-  }
+  const SyntheticLog log = with_ringing_mode(cut, 4.0, 0.5);
   Monitor monitor{monitor_settings(cut)};
   const ExpectedMode near{715.0, 0.02}, far{1500.0, 0.02};
   monitor.expect({&near, 1}, kNaN);
