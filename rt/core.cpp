@@ -110,7 +110,7 @@ void Core::adopt_lobes(std::int64_t now_ns) noexcept {
   std::size_t due = 0;
   while (due < next_lobes_count_ && waiting_lobes(due).usable_from_ns <= now_ns) ++due;
   if (due == 0) return;
-  lobes_ = waiting_lobes(due - 1);
+  for (std::size_t i = 0; i < due; ++i) (waiting_lobes(i).ahead ? lobes_ahead_ : lobes_) = waiting_lobes(i);
   first_lobes_ = (first_lobes_ + due) % next_lobes_.size();
   next_lobes_count_ -= due;
   update_prior();
@@ -133,6 +133,10 @@ const LobeDiagram* Core::lobes() const noexcept {
   return of_another_posture ? nullptr : &lobes_;
 }
 
+const LobeDiagram* Core::lobes_ahead() const noexcept {
+  return lobes_ahead_.valid && now_ns_ < lobes_ahead_.usable_until_ns ? &lobes_ahead_ : nullptr;
+}
+
 double Core::axial_depth() const noexcept {
   return robot_heard_ && std::isfinite(robot_.axial_depth) ? robot_.axial_depth : settings_.axial_depth;
 }
@@ -149,6 +153,8 @@ void Core::decide(std::int64_t stamp_ns) noexcept {
   in.now_ns = now_ns;
   in.monitor = &view();
   in.lobes = lobes();
+  in.lobes_ahead = lobes_ahead();
+  in.robot = robot_heard_ ? &robot_ : nullptr;
   in.axial_depth = axial_depth();
   in.feed_direction = robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
   in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
