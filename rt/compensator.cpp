@@ -128,6 +128,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
 
 // Nothing was tried, as nobody follows a shadow; but a frequency that has drifted asks for another speed.
 void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept {
+  act_until_ns_ = in.now_ns + kShadowAct_ns;
   const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
   const bool other_kind = next.kind != candidate_.kind;
   const bool other_speed =
@@ -206,7 +207,8 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.chatter_frequency_hz = heard.single_line ? heard.chatter_frequency_hz : kNaN;
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
-  s.present = correcting() ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
+  const bool followed = correcting() && settings_.mode == RuntimeMode::active;
+  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
   s.present.speed = heard.speed;
   s.prediction = prediction(in);
   // The lobes lie where they are heard, as long as the program's own speed is the one that is heard.

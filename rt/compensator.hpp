@@ -90,7 +90,7 @@ class Compensator {
   bool refused_ = false;                            // the controller refused or did not answer: no more in this episode
   std::int64_t sequence_ = 0, first_sequence_ = 0;  // of the last message, of the first of this candidate
   std::int64_t began_ns_ = 0, act_until_ns_ = 0, next_publish_ns_ = 0;
-  std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this candidate
+  std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this correction
   std::int64_t chatter_since_ns_ = 0, quiet_since_ns_ = 0, air_since_ns_ = 0, saturated_since_ns_ = 0;  // 0: is not
   double chatter_frequency_hz_ = 0.0, frequency_scale_ = 1.0;
   double chatter_depth_ = 0.0, chatter_margin_ = 0.0;  // m; predicted at the programmed speed when it was heard

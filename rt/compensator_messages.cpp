@@ -49,12 +49,12 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   const ChatterSituation now = situation(in);
   if (!correcting()) {
     begin_motion(in);
+    answered_ns_ = in.now_ns;
     frequency_scale_ = now.prediction.frequency_scale;
     chatter_depth_ = in.axial_depth;
     chatter_margin_ = margin_at(now.prediction, programmed_.speed);
   }
   if (!motion_.move_to(candidate.setting, motion_time(in.now_ns), settings_.limits, 1.0)) return;
-  answered_ns_ = in.now_ns;
   first_sequence_ = sequence_ + 1;
   candidate_ = candidate;
   remembered_ = candidate.remembered;

@@ -62,7 +62,9 @@ VariationChoice choose_variation(const VariationQuestion& q, const CompensationL
     best = {true, mean, ratio, frequency_hz, best.margin_before, margin};
   };
   if (!predicted) {
-    consider(q.speed, std::min(kUnpredictedRatio, limits.max_variation));
+    const double ratio = std::min(kUnpredictedRatio, limits.max_variation);
+    const double lowest = limits.spindle.min_speed / (1.0 - ratio), highest = limits.spindle.max_speed / (1.0 + ratio);
+    if (ratio > 0.0 && lowest <= highest) consider(std::clamp(q.speed, lowest, highest), ratio);
     return best;
   }
   const double low = limits.spindle.min_speed, high = limits.spindle.max_speed;
