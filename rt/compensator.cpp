@@ -113,9 +113,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   if (acting && !refused) return;
   if (heard.chatter) {
     const bool fading = !(heard.indicator >= 1.0);
-    const bool may_be_forced =
-        heard.kind == ChatterKind::unknown && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns);
-    if (fading || may_be_forced) return;
+    if (fading || (may_be_forced(in) && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns))) return;
   }
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
   if (correcting() && !refused) {  // it had its time and did not help: the next one
@@ -204,7 +202,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   const MonitorView& heard = *in.monitor;
   ChatterSituation s;
   s.structural = !heard.chatter || heard.kind == ChatterKind::structural;
-  s.chatter_frequency_hz = heard.single_line ? heard.chatter_frequency_hz : kNaN;
+  s.chatter_frequency_hz = frequency_of_chatter(in);
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
@@ -216,6 +214,22 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
     s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);
   s.remembered = memory_.recall(place(in));
   return s;
+}
+
+// NaN where the tool is thrown about without a line.
+double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !heard.single_line) return kNaN;
+  return in.lobes == nullptr ? heard.chatter_frequency_hz
+                             : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
+}
+
+// A line of unknown kind may be forced, unless chatter is predicted there.
+bool Compensator::may_be_forced(const CompensatorInputs& in) const noexcept {
+  if (in.monitor->kind != ChatterKind::unknown) return false;
+  const bool predicted = in.lobes != nullptr && margin_at(prediction(in), in.monitor->speed) < 0.0 &&
+                         explains(*in.lobes, in.monitor->speed, frequency_of_chatter(in));
+  return !predicted;
 }
 
 // The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
