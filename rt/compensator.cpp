@@ -17,7 +17,7 @@ constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
-constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kLastsCycles = 10.0;  // until the effect is there
+constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kMostSettling_s = 2.5;  // until the effect is there
 constexpr double kSwingsToAct = 2.0;
 constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
 constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
@@ -203,6 +203,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   ChatterSituation s;
   s.structural = !heard.chatter || heard.kind == ChatterKind::structural;
   s.chatter_frequency_hz = frequency_of_chatter(in);
+  s.vibration_hz = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
@@ -252,11 +253,9 @@ void Compensator::remember(const CompensatorInputs& in) noexcept {
 
 std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {
   if (settings_.mode == RuntimeMode::shadow) return kShadowAct_ns;
-  const MonitorView& heard = *in.monitor;
-  const double frequency_hz = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
   double s = motion_.arrives_at() - motion_time(in.now_ns) + kLasts_s +
              kLastsTimeConstants * settings_.limits.spindle_time_constant_s;
-  if (frequency_hz > kLastsCycles) s += kLastsCycles / frequency_hz;
+  s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, kMostSettling_s);
   if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
   return to_ns(s);
 }
