@@ -1,0 +1,188 @@
+#include "tests/tools/closed_loop/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "rt/trajectory.hpp"
+
+namespace stillcut::campaign {
+namespace {
+
+constexpr std::int64_t kCampaignOrigin = 1'700'000'000'000'000'000;
+constexpr double kFastFrom_hz = 80.0;                     // as the truth's
+constexpr double kFastWindow = 0.05, kSlowWindow = 0.25;  // s
+constexpr double kAlarmLead = 0.3;                        // s, an accelerometer hears less than 3 um
+constexpr double kSameSetting = 0.005;                    // relative
+constexpr double kDown = 0.1;                             // of the peak
+constexpr double kTimeConstants = 4.0, kRoom = 0.1;       // of the spindle; s
+constexpr int kManySpells = 3;
+constexpr double kBeforeExit = 0.4;  // s: the tool is still whole in the part
+
+double seconds(std::int64_t stamp_ns) { return static_cast<double>(stamp_ns - kCampaignOrigin) * 1e-9; }
+
+Asked asked_by(const Correction& c) {
+  Asked asked{seconds(c.stamp_ns), c.kind, 0.0};
+  if (c.kind == CorrectionKind::spindle_speed) asked.value = rpm_to_rad_s(c.spindle_speed_target_rpm);
+  if (c.kind == CorrectionKind::speed_variation) asked.value = c.speed_variation_ratio;
+  if (c.kind == CorrectionKind::feed_direction) asked.value = c.feed_direction;
+  if (c.kind == CorrectionKind::feed_override) asked.value = c.feed_override;
+  return asked;
+}
+
+bool same(const Asked& a, const Asked& b) {
+  return a.kind == b.kind &&
+         std::abs(a.value - b.value) <= kSameSetting * std::max(std::abs(a.value), std::abs(b.value));
+}
+
+// The messages' changes of setting, until a stop.
+std::vector<Asked> settings_of(const std::vector<Correction>& corrections) {
+  std::vector<Asked> settings;
+  for (const Correction& c : corrections) {
+    if (c.mode != RuntimeMode::active) continue;
+    const Asked asked = asked_by(c);
+    const bool nothing_to_release = settings.empty() && asked.kind == CorrectionKind::release;
+    if (nothing_to_release || (!settings.empty() && same(settings.back(), asked))) continue;
+    settings.push_back(asked);
+    if (asked.kind == CorrectionKind::stop_request) break;
+  }
+  return settings;
+}
+
+int distinct(const std::vector<Asked>& settings) {
+  int count = 0;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const auto seen = [&](const Asked& earlier) { return same(earlier, settings[i]); };
+    const auto here = settings.begin() + static_cast<std::ptrdiff_t>(i);
+    if (settings[i].kind != CorrectionKind::release && std::none_of(settings.begin(), here, seen)) ++count;
+  }
+  return count;
+}
+
+bool comes_again(const std::vector<Asked>& settings) {
+  for (std::size_t i = 2; i < settings.size(); ++i)
+    if (settings[i].kind != CorrectionKind::release && same(settings[i], settings[i - 2])) return true;
+  return false;
+}
+
+// Amplitude at each millisecond, m.
+std::vector<double> amplitude_of(const VirtualMachine& machine, bool fast) {
+  const auto& ms = machine.truth().milliseconds();
+  const auto window = static_cast<std::size_t>(1e3 * (fast ? kFastWindow : kSlowWindow));
+  std::vector<double> amplitude(ms.size());
+  double square = 0.0;
+  int samples = 0;
+  const auto squares = [&](std::size_t i) { return fast ? ms[i].fast_square : ms[i].square; };
+  for (std::size_t i = 0; i < ms.size(); ++i) {
+    square += squares(i);
+    samples += ms[i].samples;
+    if (i >= window) {
+      square -= squares(i - window);
+      samples -= ms[i - window].samples;
+    }
+    amplitude[i] = samples > 0 ? std::sqrt(2.0 * std::max(square, 0.0) / samples) : 0.0;
+  }
+  return amplitude;
+}
+
+struct Amplitude {
+  std::vector<double> at_ms;
+
+  [[nodiscard]] std::size_t index(double time) const {
+    const double last = static_cast<double>(at_ms.size()) - 1.0;
+    return static_cast<std::size_t>(std::clamp(1e3 * time, 0.0, last));
+  }
+  [[nodiscard]] double at(double time) const { return at_ms[index(time)]; }
+  [[nodiscard]] double highest(double from, double to) const {
+    double most = 0.0;
+    for (std::size_t i = index(from); i < index(to); ++i) most = std::max(most, at_ms[i]);
+    return most;
+  }
+  [[nodiscard]] double share(double part, double from, double to) const {
+    std::vector<double> values(at_ms.begin() + static_cast<std::ptrdiff_t>(index(from)),
+                               at_ms.begin() + static_cast<std::ptrdiff_t>(index(to)));
+    if (values.empty()) return kNaN;
+    const auto nth = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + nth, values.end());
+    return values[static_cast<std::size_t>(nth)];
+  }
+};
+
+double measured_speed(const VirtualMachine& machine, double time) {
+  const auto& moments = machine.moments();
+  return moments[std::min(static_cast<std::size_t>(1e3 * time), moments.size() - 1)].spindle_speed;
+}
+
+// Duration of the jerk-limited move from the speed at the first correction to the last speed asked for.
+double move_duration(const RandomCell& cell, const VirtualMachine& machine, const std::vector<Asked>& asked) {
+  const auto is_speed = [](const Asked& a) { return a.kind == CorrectionKind::spindle_speed; };
+  const auto first = std::find_if(asked.begin(), asked.end(), is_speed);
+  const auto last = std::find_if(asked.rbegin(), asked.rend(), is_speed);
+  if (first == asked.end()) return 0.0;
+  const VelocityPlan plan = plan_velocity({0.0, measured_speed(machine, first->time), 0.0}, last->value, 0.0,
+                                          {cell.spindle.acceleration, cell.spindle.jerk});
+  return plan.error == TrajectoryError::none ? plan.trajectory.duration() : 0.0;
+}
+
+void measure_amplitude(const RandomCell& cell, const VirtualMachine& machine, RunMetrics& run) {
+  const Amplitude amplitude{amplitude_of(machine, !(run.chatter_hz < kFastFrom_hz))};
+  const double end = cell.duration - kBeforeExit;
+  run.settled = amplitude.share(0.95, 0.5 * (cell.deep_from + end), end);
+  if (cell.kind == CellClass::stable) return;
+  run.sound = amplitude.highest(0.8, 1.2);
+  if (!run.chattered) return;
+  run.peak = amplitude.highest(run.chatter_from, end);
+  if (std::isnan(run.alarm)) return;
+  run.at_alarm = amplitude.at(run.alarm);
+  if (!run.asked.empty()) run.at_correction = amplitude.at(run.asked.front().time);
+  double last = run.alarm;
+  for (double time = run.alarm; time < end; time += 1e-3)
+    if (amplitude.at(time) > kDown * run.peak) last = time;
+  run.down_after = last + 2e-3 < end ? last - run.alarm : RunMetrics::kFar;
+}
+
+}  // namespace
+
+RunMetrics measure(const RandomCell& cell, const VirtualMachine& machine, const Heard& heard) {
+  RunMetrics run;
+  const std::vector<ChatterSpell> spells = machine.truth().spells();
+  run.spells = static_cast<int>(spells.size());
+  run.chattered = !spells.empty();
+  if (run.chattered) {
+    run.chatter_from = spells.front().start;
+    run.chatter_hz = spells.front().frequency_hz;
+    const bool down = std::all_of(spells.begin(), spells.end(), [&](const ChatterSpell& spell) {
+      return spell.died_down && (spell.end < cell.duration - kBeforeExit || cell.kind == CellClass::stable);
+    });
+    run.ended = down ? spells.back().end : RunMetrics::kFar;
+  }
+  for (const Event& event : heard.events) {
+    if (event.type != EventType::chatter_onset) continue;
+    ++run.onsets;
+    const double time = seconds(event.stamp_ns);
+    if (std::isnan(run.alarm) && (!run.chattered || time >= run.chatter_from - kAlarmLead)) run.alarm = time;
+  }
+  run.asked = settings_of(heard.corrections);
+  run.targets = distinct(run.asked);
+  run.limit_cycle = comes_again(run.asked) || run.spells >= kManySpells;
+  run.stopped = machine.controller().stopped();
+  if (!heard.corrections.empty()) run.reason = heard.corrections.back().reason.data();
+  for (const Correction& c : heard.corrections)
+    if (run.stopped && c.kind == CorrectionKind::stop_request) run.reason = c.reason.data();
+  run.allowed =
+      move_duration(cell, machine, run.asked) + kTimeConstants * cell.controller.spindle_time_constant + kRoom;
+  measure_amplitude(cell, machine, run);
+  return run;
+}
+
+RunMetrics run_cell(const RandomCell& random, const std::filesystem::path& folder) {
+  write_cell(random, folder);
+  Cell known = read_cell(folder / "cell.toml", {.bus = false});
+  known.mode = RuntimeMode::active;
+  const Cell milled = read_cell(folder / "machine.toml", {.bus = false});
+  VirtualMachine machine{milled, read_scenario(folder / "scenario.toml", milled), kCampaignOrigin};
+  const Heard heard = run_in_data_time(known, machine);
+  return measure(random, machine, heard);
+}
+
+}  // namespace stillcut::campaign
