@@ -2,6 +2,7 @@
 // itself: how soon the chatter was down, how often the target changed, whether it came back, whether it was stopped.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ struct RunMetrics {
   bool chattered = false;      // by the machine's truth
   double chatter_from = kNaN;  // s
   double chatter_hz = kNaN;    // truth
-  double ended = kNaN;         // s: the last spell; NaN: it lasts until the end
+  double ended = kNaN;         // s: of the last spell; kFar: it lasts until the exit
   int spells = 0;
-  double alarm = kNaN;       // s: first chatter_onset from 0.3 s before the chatter on
+  double alarm = kNaN;       // s: first chatter_onset after the sound depth was left
+  int times_back = 0;        // the chatter, after it had been down
   int onsets = 0;            // in all
   std::vector<Asked> asked;  // in time, one for each change of setting
   int targets = 0;           // distinct settings, releases not counted
@@ -40,11 +42,14 @@ struct RunMetrics {
   double at_alarm = kNaN, at_correction = kNaN;  // m
   double sound = kNaN;                           // m, before the deep cut
   double settled = kNaN;                         // m, 95 % of the second half of the deep cut
+  double in_pocket = kNaN;  // m, the same where the pocket's speed is programmed and nothing corrected
 
   [[nodiscard]] bool in_time() const { return down_after <= allowed; }
-  // What remains is no chatter by the truth and yet more than a tenth of the peak: noise of the force hides whether it
-  // is down.
-  [[nodiscard]] bool hidden() const { return ended < kFar && settled > 0.1 * peak; }
+  // A correction came before the chatter could be seen, and it stayed so.
+  [[nodiscard]] bool forestalled() const { return !chattered && !std::isnan(alarm) && !asked.empty(); }
+  // What the noise of the force leaves at the pocket's own speed is more than a tenth of the peak: it hides whether the
+  // chatter is down.
+  [[nodiscard]] bool hidden() const { return in_pocket > 0.1 * peak; }
   static constexpr double kFar = 1e9;
 };
 

@@ -121,6 +121,13 @@ double chatter_frequency_at(const LobeDiagram& diagram, double speed) {
   return nearest->chatter_frequency_hz;
 }
 
+// Chatter that repeats with the spindle looks like runout to the machine's truth (models/chatter_truth.hpp).
+bool repeats_with_spindle(const RandomCell& cell) {
+  constexpr double kTooNear = 0.06;  // of the spindle's frequency
+  const double turns = kTwoPi * cell.chatter_hz / cell.cut.spindle_speed;
+  return std::abs(turns - std::round(turns)) < kTooNear;
+}
+
 // The best speed near one of n = 60 f_c / (N k), with room about it inside the spindle's range.
 void find_pocket(const LobeDiagram& diagram, RandomCell& cell) {
   const double first = kTwoPi * cell.chatter_hz / cell.tool.teeth;
@@ -166,6 +173,7 @@ std::optional<double> choose_depth(Draw& draw, const LobeDiagram& diagram, Rando
 void schedule_into_chatter(Draw& draw, RandomCell& cell, double duration) {
   const double deep = cell.cut.axial_depth, sound = 0.45 * cell.depth_limit;
   const double from = draw.from(1.2, 1.8), until = from + (draw.chance(0.5) ? 0.0 : draw.from(0.4, 1.5));
+  cell.deeper_from = from;
   cell.deep_from = until;
   cell.axial_depth = {{0.0, 0.0},
                       {kAirFor, 0.0},
@@ -242,7 +250,9 @@ RandomCell random_cell(CellClass kind, std::uint64_t seed, std::uint64_t index, 
         compute_lobe_diagram(cell.tool, cell.material, cell.cut, cell.spindle, cell.modes, {.points = 161});
     cell.depth_limit = depth_limit_at(diagram, cell.cut.spindle_speed);
     cell.chatter_hz = chatter_frequency_at(diagram, cell.cut.spindle_speed);
-    if (kind != CellClass::stable && !(cell.depth_limit > 2e-4 && cell.depth_limit < kDeepest)) continue;
+    if (kind != CellClass::stable &&
+        (!(cell.depth_limit > 2e-4 && cell.depth_limit < kDeepest) || repeats_with_spindle(cell)))
+      continue;
     if (kind == CellClass::pocket) find_pocket(diagram, cell);
     const std::optional<double> depth = choose_depth(draw, diagram, cell);
     if (!depth) continue;

@@ -36,9 +36,9 @@ struct RandomCell {
   std::vector<Mode> modes, map_modes;  // of the machine, and as the monitor knows them
   ControllerScript controller;
   Schedule axial_depth;
-  double duration = 0.0;   // s
-  double deep_from = 0.0;  // s: the deepest depth is reached
-  std::uint64_t seed = 1;  // of the noise
+  double duration = 0.0;                      // s
+  double deeper_from = 0.0, deep_from = 0.0;  // s: the sound depth is left, the deepest reached
+  std::uint64_t seed = 1;                     // of the noise
 
   // By the lobes of the machine.
   double depth_limit = 0.0;    // m, at the programmed speed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <functional>
 
@@ -15,10 +16,12 @@ constexpr double kGrown = 3.0;    // at the correction, of the amplitude at the 
 constexpr int kMostTargets = 2;
 constexpr double kBroughtDown = 0.1;  // of the peak
 
-template <class... Values>
-std::string printed(const char* format, Values... values) {
+[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...) {
   char text[512];
-  std::snprintf(text, sizeof text, format, values...);
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
   return text;
 }
 
@@ -98,12 +101,12 @@ double median(std::vector<double> values) {
 }
 
 std::string pocket_text(const Counted& counted, bool& met) {
-  const Verdict heard = [](const RunMetrics& m) { return m.chattered; };
+  const Verdict heard = [](const RunMetrics& m) { return m.chattered || m.forestalled(); };
   const Verdict corrected = [](const RunMetrics& m) { return m.chattered && !m.asked.empty(); };
   std::string text =
       criterion(
           "chatter below 10 % of its peak within move + 4 T + 0.1 s of the alarm", counted, heard,
-          [](const RunMetrics& m) { return m.in_time(); }, kInTime, met) +
+          [](const RunMetrics& m) { return m.in_time() || m.forestalled(); }, kInTime, met) +
       criterion(
           "amplitude at the correction below 3 x that at the alarm", counted, corrected,
           [](const RunMetrics& m) { return m.at_correction < kGrown * m.at_alarm; }, kInTime, met) +
@@ -116,16 +119,18 @@ std::string pocket_text(const Counted& counted, bool& met) {
   text +=
       "also: " + criterion(
                      "heard", counted, heard, [](const RunMetrics& m) { return !std::isnan(m.alarm); }, 0.0, ignored);
-  text += "also: " + criterion(
-                         "by the truth ended", counted, heard,
-                         [](const RunMetrics& m) { return m.ended < RunMetrics::kFar; }, 0.0, ignored);
   text +=
       "also: " + criterion(
-                     "by the truth ended, or below 10 %, in time", counted, heard,
-                     [](const RunMetrics& m) { return m.in_time() || m.ended <= m.alarm + m.allowed; }, 0.0, ignored);
+                     "by the truth ended", counted, heard,
+                     [](const RunMetrics& m) { return m.ended < RunMetrics::kFar || m.forestalled(); }, 0.0, ignored);
+  text += "also: " +
+          criterion(
+              "by the truth ended, or below 10 %, in time", counted, heard,
+              [](const RunMetrics& m) { return m.in_time() || m.forestalled() || m.ended <= m.alarm + m.allowed; }, 0.0,
+              ignored);
   const auto hidden = counted.of([](const RunMetrics& m) { return m.chattered && m.hidden(); });
-  text += printed("the noise of the force leaves more than 10 %% of the peak in %zu", hidden.size()) + indices(hidden) +
-          '\n';
+  text += printed("at the pocket's own speed more than 10 %% of the peak remains in %zu", hidden.size()) +
+          indices(hidden) + '\n';
   return text;
 }
 
@@ -138,11 +143,11 @@ std::string medians(const std::vector<CellRun>& runs) {
   };
   return printed(
       "medians: alarm %.0f ms after the chatter, down %.2f s after the alarm (allowed %.2f), peak %.1f um, "
-      "remains %.2f um, sound cut before %.2f um\n",
+      "remains %.2f um, pocket itself %.2f um, sound cut before %.2f um\n",
       1e3 * of([](const RunMetrics& m) { return m.alarm - m.chatter_from; }),
       of([](const RunMetrics& m) { return m.down_after; }), of([](const RunMetrics& m) { return m.allowed; }),
       1e6 * of([](const RunMetrics& m) { return m.peak; }), 1e6 * of([](const RunMetrics& m) { return m.settled; }),
-      1e6 * of([](const RunMetrics& m) { return m.sound; }));
+      1e6 * of([](const RunMetrics& m) { return m.in_pocket; }), 1e6 * of([](const RunMetrics& m) { return m.sound; }));
 }
 
 }  // namespace
@@ -193,12 +198,13 @@ std::string line_of(const CellRun& run) {
   return printed(
              "%4d %5.0f rpm %.2f mm (limit %.2f) pocket %5.0f rpm %+.2f | chatter %6.1f Hz from %5.2f s, alarm %+5.0f "
              "ms, "
-             "down %7.2f s (allowed %.2f) peak %5.1f settled %5.2f sound %5.2f um, x%.1f, %d targets, %d spells%s%s | ",
+             "down %7.2f s (allowed %.2f) peak %5.1f settled %5.2f floor %5.2f sound %5.2f um, x%.1f, %d targets, %d "
+             "spells, %d times back%s%s | ",
              run.index, rad_s_to_rpm(run.cell.cut.spindle_speed), 1e3 * run.cell.cut.axial_depth,
              1e3 * run.cell.depth_limit, rad_s_to_rpm(run.cell.pocket_speed), run.cell.pocket_margin, m.chatter_hz,
              m.chatter_from, 1e3 * (m.alarm - m.chatter_from), m.down_after < RunMetrics::kFar ? m.down_after : kNaN,
-             m.allowed, 1e6 * m.peak, 1e6 * m.settled, 1e6 * m.sound, m.at_correction / m.at_alarm, m.targets, m.spells,
-             m.limit_cycle ? ", LIMIT CYCLE" : "", m.stopped ? ", stopped" : "") +
+             m.allowed, 1e6 * m.peak, 1e6 * m.settled, 1e6 * m.in_pocket, 1e6 * m.sound, m.at_correction / m.at_alarm,
+             m.targets, m.spells, m.times_back, m.limit_cycle ? ", LIMIT CYCLE" : "", m.stopped ? ", stopped" : "") +
          kinds_of(m) + (m.reason.empty() ? "" : ": " + m.reason);
 }
 
@@ -212,7 +218,7 @@ std::string settings_text(const CellRun& run) {
 std::string csv_header() {
   return "index,spindle_speed_rpm,axial_depth_mm,depth_limit_mm,pocket_rpm,pocket_margin,predicted_hz,chatter_hz,"
          "chatter_from_s,alarm_s,allowed_s,down_after_s,ended_s,peak_um,at_alarm_um,at_correction_um,sound_um,"
-         "settled_um,targets,spells,onsets,limit_cycle,stopped,asked,reason,problem\n";
+         "settled_um,floor_um,targets,spells,onsets,limit_cycle,stopped,asked,reason,problem\n";
 }
 
 std::string csv_row(const CellRun& run) {
@@ -223,7 +229,7 @@ std::string csv_row(const CellRun& run) {
        {rad_s_to_rpm(run.cell.cut.spindle_speed), 1e3 * run.cell.cut.axial_depth, 1e3 * run.cell.depth_limit,
         rad_s_to_rpm(run.cell.pocket_speed), run.cell.pocket_margin, run.cell.chatter_hz, m.chatter_hz, m.chatter_from,
         m.alarm, m.allowed, m.down_after, m.ended, 1e6 * m.peak, 1e6 * m.at_alarm, 1e6 * m.at_correction, 1e6 * m.sound,
-        1e6 * m.settled})
+        1e6 * m.settled, 1e6 * m.in_pocket})
     row.append(",").append(number(value));
   for (const int count : {m.targets, m.spells, m.onsets, int{m.limit_cycle}, int{m.stopped}})
     row.append(",").append(std::to_string(count));
