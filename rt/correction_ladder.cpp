@@ -25,6 +25,13 @@ struct Rung {
   bool stable = false;  // predicted so, or the best that can be said without a prediction
 };
 
+double depth_scatter(const Prediction& p) noexcept {
+  double scatter = 0.0;
+  for (const LobeDiagram* diagram : {p.here, p.ahead})
+    if (diagram != nullptr) scatter = std::max(scatter, diagram->depth_scatter);
+  return scatter;
+}
+
 Rung speed_rung(const ChatterSituation& s, const Attempts& attempts, const CompensationLimits& limits) noexcept {
   const double depth = s.prediction.axial_depth;
   if (!may(CorrectionKind::spindle_speed, attempts, depth, kMostSpeeds)) return {};
@@ -66,7 +73,7 @@ Rung variation_rung(const ChatterSituation& s, const Attempts& attempts, const C
   rung.candidate.margin_before = choice.margin_before;
   rung.candidate.margin_after = choice.margin_after;
   rung.candidate.confidence_percent = 30;
-  rung.stable = !(choice.margin_after <= 0.0);
+  rung.stable = !((1.0 + choice.margin_after) * (1.0 - depth_scatter(s.prediction)) <= 1.0);
   return rung;
 }
 

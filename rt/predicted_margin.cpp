@@ -13,7 +13,6 @@ constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: 
 constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
 constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
 constexpr double kSidebandFound = 0.03;   // nearer than this to the prediction: its sideband
-constexpr int kMostPoints = 64;           // looked at within the scatter; bounds the work
 
 double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
   return diagram == nullptr ? kNaN : margin_at(*diagram, speed / p.frequency_scale, p.axial_depth);
@@ -21,20 +20,25 @@ double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double spe
 
 double worse(double a, double b) noexcept { return std::isnan(a) ? b : std::isnan(b) ? a : std::min(a, b); }
 
-// The least margin of one diagram from low to high, at its points and at both ends.
+// The least margin of one diagram from low to high: at both ends, and at every point between. (Between two points the
+// smaller one holds, so nothing is less.)
 double least_margin(const Prediction& p, const LobeDiagram* diagram, double low, double high) noexcept {
   if (diagram == nullptr || !diagram->valid || diagram->point_count < 2) return kNaN;
-  const auto last = static_cast<std::size_t>(diagram->point_count) - 1;
+  const auto last = static_cast<std::size_t>(std::min(diagram->point_count, LobeDiagram::kMaxPoints)) - 1;
   const double first_speed = diagram->points[0].speed * p.frequency_scale;
   const double last_speed = diagram->points[last].speed * p.frequency_scale;
   const double from = std::max(low, first_speed), to = std::min(high, last_speed);
-  if (!(from <= to)) return kNaN;
-  const double spacing = (last_speed - first_speed) / static_cast<double>(last);
-  const double step = std::max(spacing, (to - from) / kMostPoints);
-  double least = worse(scaled_margin(p, diagram, from), scaled_margin(p, diagram, to));
-  for (double speed = first_speed + std::ceil((from - first_speed) / step) * step; speed < to; speed += step)
-    least = worse(least, scaled_margin(p, diagram, speed));
-  return least;
+  if (!(from <= to && last_speed > first_speed)) return kNaN;
+  const double at_ends = worse(scaled_margin(p, diagram, from), scaled_margin(p, diagram, to));
+  const double places = static_cast<double>(last) / (last_speed - first_speed);
+  const auto first_inside = static_cast<std::size_t>(std::ceil((from - first_speed) * places));
+  const auto last_inside = std::min(static_cast<std::size_t>((to - first_speed) * places), last);
+  double least = kInfinity;
+  for (std::size_t i = first_inside; i <= last_inside; ++i) {
+    const double limit = diagram->points[i].depth_limit;
+    least = std::min(least, std::isnan(limit) ? 0.0 : limit);
+  }
+  return std::min(at_ends, least / p.axial_depth - 1.0);
 }
 
 // Chatter frequency predicted at a speed; NaN: none, or between two points that differ.

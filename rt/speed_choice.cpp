@@ -25,6 +25,7 @@ constexpr double kLeastSafeMargin = 0.02, kMostSafeMargin = 1.0;    // beyond th
 struct Candidate {
   double target = 0.0;
   int lobe = 0;
+  bool beside = false;  // the lobe's n_k
 };
 
 double move_time(const SpeedQuestion& q, const CompensationLimits& limits, double target) noexcept {
@@ -79,8 +80,7 @@ class Search {
   // n_k itself where that is safe; else the nearest safe speed beside it, else the safest.
   void consider_lobe(double n_k, int lobe) noexcept {
     if (was_tried(n_k, kSameTarget)) return;
-    consider({n_k, lobe});
-    if (best_.lobe == lobe && best_.grounds == SpeedGrounds::agreed) return;
+    if (consider({n_k, lobe}) == SpeedGrounds::agreed) return;
     const double reach = std::min(kBeside, kBesideOfLobe / lobe);
     for (int i = 1; i <= kBesideSteps; ++i)
       for (const int side : {-1, 1}) {
@@ -88,26 +88,29 @@ class Search {
         const double speed = n_k * (1.0 + off);
         // Without a prediction for it nothing speaks for a speed that is out of step.
         if (std::isnan(margin_at(q_.prediction, speed))) continue;
-        consider({speed, lobe});
-        if (best_.lobe == lobe && best_.grounds == SpeedGrounds::agreed && best_.target == speed) return;
+        if (consider({speed, lobe, true}) == SpeedGrounds::agreed) return;
       }
   }
-  void consider(const Candidate& candidate) noexcept {
+  // The grounds on which it may be chosen, whether or not it is the best.
+  SpeedGrounds consider(const Candidate& candidate) noexcept {
+    constexpr SpeedGrounds kNone = SpeedGrounds::none;
     const double target = candidate.target;
-    if (!may_stay_at(limits_, target) || !keeps_feed_per_tooth(limits_, target, q_.programmed_speed)) return;
-    if (std::abs(target - q_.speed) < kAlreadyThere * q_.speed) return;
-    if (was_tried(target, candidate.lobe == 0 ? kSamePocket : kSameTarget)) return;
+    if (!may_stay_at(limits_, target) || !keeps_feed_per_tooth(limits_, target, q_.programmed_speed)) return kNone;
+    if (std::abs(target - q_.speed) < kAlreadyThere * q_.speed) return kNone;
+    if (was_tried(target, candidate.lobe == 0 ? kSamePocket : kSameTarget)) return kNone;
     SpeedChoice c;
     c.target = target;
     c.lobe = candidate.lobe;
     c.margin_before = margin_before_;
     c.margin_after = margin_at(q_.prediction, target);
     c.safe_margin = safe_margin_at(q_.prediction, target);
-    c.grounds = grounds_of(c);
-    if (c.grounds == SpeedGrounds::none) return;
+    c.grounds = grounds_of(c, candidate.beside);
+    if (c.grounds == kNone) return kNone;
     c.move_s = move_time(q_, limits_, target);
+    if (std::isnan(c.move_s)) return kNone;
     c.decay_s = decay_time(q_, c.safe_margin);
-    if (!std::isnan(c.move_s) && better(c, best_)) best_ = c;
+    if (better(c, best_)) best_ = c;
+    return c.grounds;
   }
 
   SpeedChoice finish() noexcept {
@@ -128,7 +131,7 @@ class Search {
   }
 
   // Do no harm: a setting predicted no better than the present one is none.
-  [[nodiscard]] SpeedGrounds grounds_of(const SpeedChoice& c) const noexcept {
+  [[nodiscard]] SpeedGrounds grounds_of(const SpeedChoice& c, bool beside) const noexcept {
     const bool predicted = !std::isnan(c.safe_margin);
     const bool was_predicted = !std::isnan(margin_before_);
     if (predicted && was_predicted && !(c.margin_after > margin_before_ && c.safe_margin > margin_before_))
@@ -137,7 +140,8 @@ class Search {
       if (c.lobe > 0) return SpeedGrounds::agreed;
       return heard_is_known_ ? SpeedGrounds::predicted : SpeedGrounds::improved;
     }
-    if (c.lobe > 0 && (!predicted || !heard_is_known_)) return SpeedGrounds::in_step;
+    // Beside n_k only a prediction speaks for a speed, and one that knows nothing of this frequency does not.
+    if (c.lobe > 0 && !beside && (!predicted || !heard_is_known_)) return SpeedGrounds::in_step;
     const bool gains = was_predicted && c.safe_margin - margin_before_ > kLeastGain;
     return predicted && gains ? SpeedGrounds::improved : SpeedGrounds::none;
   }
