@@ -10,6 +10,10 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
+constexpr std::int64_t kUnpredictedWaits_ns = 300'000'000;
+constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
+constexpr std::int64_t kPatience_ns =
+    6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
 constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
 constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
@@ -18,9 +22,10 @@ constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the
 constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
-constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kMostSettling_s = 2.5;  // until the effect is there
-constexpr double kFallen = 0.1, kTolerated = 2.0;                                   // of the loudest; of what was left
-constexpr double kFalls = 0.7;                                                      // from one look to the next
+constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
+constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
+constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
+constexpr double kFalls = 0.7;                                             // from one look to the next
 constexpr std::int64_t kLookAgain_ns = 300'000'000;
 constexpr double kSwingsToAct = 2.0;
 constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
@@ -118,10 +123,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
   const bool refused = correcting() && attempts_.refused(candidate_.kind);
   if (acting && !refused) return;
-  if (heard.chatter) {
-    const bool fading = !(heard.indicator >= 1.0);
-    if (fading || (may_be_forced(in) && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns))) return;
-  }
+  if (!tool_chatters(in) && !structure_chatters(in)) return;
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
   if (correcting() && !refused && gives_more_time(in)) return;
   if (correcting() && !refused) {  // it had its time and did not help: the next one
@@ -136,7 +138,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
 // or an echo of it: both are the success that was asked for.
 bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
   const MonitorView& heard = *in.monitor;
-  if (!heard.chatter || !heard.single_line || candidate_.kind == CorrectionKind::stop_request) return false;
+  if (!tool_chatters(in) || !heard.single_line || candidate_.kind == CorrectionKind::stop_request) return false;
   const double amplitude = heard.chatter_amplitude;
   if (amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
     tolerated_ = std::max(tolerated_, amplitude);
@@ -211,6 +213,13 @@ Prediction Compensator::prediction(const CompensatorInputs& in) const noexcept {
   return {in.lobes, in.lobes_ahead, in.axial_depth, frequency_scale_};
 }
 
+// For the depth that the cut is on its way to: a pocket that is left again by the deeper cut is none.
+Prediction Compensator::coming_prediction(const CompensatorInputs& in) const noexcept {
+  Prediction coming = prediction(in);
+  coming.axial_depth = in.coming_depth;
+  return coming;
+}
+
 CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   const CutSetting program = programmed(in);
   CutPlace place;
@@ -227,16 +236,16 @@ CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
 ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexcept {
   const MonitorView& heard = *in.monitor;
   ChatterSituation s;
-  s.structural = !heard.chatter || heard.kind == ChatterKind::structural;
+  s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
   s.chatter_frequency_hz = frequency_of_chatter(in);
-  s.vibration_hz = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
+  s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
+  s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, kPatience_ns);
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
   s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
   s.present.speed = heard.speed;
-  s.prediction = prediction(in);
-  s.prediction.axial_depth = in.coming_depth;
+  s.prediction = coming_prediction(in);
   // The lobes lie where they are heard, as long as the program's own speed is the one that is heard.
   if (!correcting() && !s.structural && in.lobes != nullptr)
     s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);
@@ -252,12 +261,29 @@ double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noex
                              : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
 }
 
-// A line of unknown kind may be forced, unless chatter is predicted there.
-bool Compensator::may_be_forced(const CompensatorInputs& in) const noexcept {
-  if (in.monitor->kind != ChatterKind::unknown) return false;
-  const bool predicted = in.lobes != nullptr && margin_at(prediction(in), in.monitor->speed) < 0.0 &&
-                         explains(*in.lobes, in.monitor->speed, frequency_of_chatter(in));
-  return !predicted;
+// Loud, and for so long as it takes to be believed: at once where chatter is predicted. Elsewhere a line of unknown
+// kind may be forced, and a burst be that of an entry.
+bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
+  const Prediction coming = coming_prediction(in);
+  if (margin_at(coming, heard.speed) < 0.0) return true;
+  const bool predicted_stable = safe_margin_at(coming, heard.speed) > 0.0;
+  const std::int64_t lasts_ns = predicted_stable                     ? kUnpredictedWaits_ns
+                                : heard.kind == ChatterKind::unknown ? kUnknownKindWaits_ns
+                                                                     : 0;
+  return has_run(chatter_since_ns_, in.now_ns, lasts_ns);
+}
+
+// What sounds like chatter of the structure may be the sweep of a changing speed: it has to be at a mode of the
+// structure, where those are known, and to last, where none is predicted.
+bool Compensator::structure_chatters(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.structural) return false;
+  if (in.lobes != nullptr && in.lobes->mode_count > 0 && !is_at_a_mode(*in.lobes, heard.structural_frequency_hz))
+    return false;
+  return !(safe_margin_at(coming_prediction(in), heard.speed) > 0.0) ||
+         has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
 }
 
 // The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
@@ -282,7 +308,8 @@ std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noex
   if (settings_.mode == RuntimeMode::shadow) return kShadowAct_ns;
   double s = motion_.arrives_at() - motion_time(in.now_ns) + kLasts_s +
              kLastsTimeConstants * settings_.limits.spindle_time_constant_s;
-  s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, kMostSettling_s);
+  const double most = tool_chatters(in) ? kMostSettling_s : kMostSettlingOfStructure_s;
+  s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, most);
   if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
   return to_ns(s);
 }

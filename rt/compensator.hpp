@@ -73,7 +73,9 @@ class Compensator {
   [[nodiscard]] CutPlace place(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutSetting programmed(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double frequency_of_chatter(const CompensatorInputs& in) const noexcept;
-  [[nodiscard]] bool may_be_forced(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool tool_chatters(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool structure_chatters(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] Prediction coming_prediction(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool reason_is_gone(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] std::int64_t time_to_act_ns(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double motion_time(std::int64_t now_ns) const noexcept {

@@ -181,6 +181,7 @@ Attempts::Speeds Attempts::speeds(double axial_depth) const noexcept {
 
 Candidate next_candidate(const ChatterSituation& s, const Attempts& attempts,
                          const CompensationLimits& limits) noexcept {
+  if (s.patience_is_out) return stop_candidate(s, attempts, limits);
   const Rung remembered = remembered_rung(s, attempts, limits);
   if (is_some(remembered)) return remembered.candidate;
   const Rung speed = speed_rung(s, attempts, limits);

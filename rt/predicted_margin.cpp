@@ -13,6 +13,7 @@ constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: 
 constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
 constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
 constexpr double kScaleMax = 0.06;
+constexpr double kAboutAMode = 0.25;
 constexpr double kSidebandFound = 0.03;  // nearer than this to the prediction: its sideband
 
 double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
@@ -86,6 +87,13 @@ double base_frequency(const LobeDiagram& diagram, double speed, int teeth, doubl
   if (explains(diagram, speed, heard_hz) || !(tooth_passing_hz > 0.0) || std::isnan(predicted)) return heard_hz;
   const double base = heard_hz - std::round((heard_hz - predicted) / tooth_passing_hz) * tooth_passing_hz;
   return std::abs(base - predicted) < kSidebandFound * predicted ? base : heard_hz;
+}
+
+bool is_at_a_mode(const LobeDiagram& diagram, double heard_hz) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
+  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count, [&](const ModeSummary& mode) {
+    return std::abs(heard_hz - mode.frequency_hz) < kAboutAMode * mode.frequency_hz;
+  });
 }
 
 bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {

@@ -33,6 +33,9 @@ struct Prediction {
 // to what is predicted at this speed (rad/s), if it comes near; otherwise as heard.
 [[nodiscard]] double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept;
 
+// Whether a heard frequency, which of a soft structure is not known well, is that of a mode.
+[[nodiscard]] bool is_at_a_mode(const LobeDiagram& diagram, double heard_hz) noexcept;
+
 // Whether a heard frequency is near one that the diagram knows: of a mode, or of chatter at this speed.
 [[nodiscard]] bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept;
 

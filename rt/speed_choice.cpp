@@ -70,9 +70,10 @@ class Search {
       : q_{question},
         limits_{limits},
         margin_before_{margin_at(q_.prediction, q_.speed)},
-        heard_is_known_{
-            q_.prediction.here != nullptr &&
-            (std::isnan(q_.chatter_frequency_hz) || explains(*q_.prediction.here, q_.speed, q_.chatter_frequency_hz))} {
+        // Chatter where it is predicted confirms the lobes, whichever of its lines is heard.
+        heard_is_known_{q_.prediction.here != nullptr &&
+                        (std::isnan(q_.chatter_frequency_hz) || margin_before_ < 0.0 ||
+                         explains(*q_.prediction.here, q_.speed, q_.chatter_frequency_hz))} {
     best_.margin_before = margin_before_;
     best_.margin_after = best_.safe_margin = kNaN;
   }
@@ -134,6 +135,7 @@ class Search {
   [[nodiscard]] SpeedGrounds grounds_of(const SpeedChoice& c, bool beside) const noexcept {
     const bool predicted = !std::isnan(c.safe_margin);
     const bool was_predicted = !std::isnan(margin_before_);
+    if (was_predicted && !predicted) return SpeedGrounds::none;  // leave what is known for what is not
     if (predicted && was_predicted && !(c.margin_after > margin_before_ && c.safe_margin > margin_before_))
       return SpeedGrounds::none;
     if (predicted && c.safe_margin > 0.0) {
