@@ -10,7 +10,7 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 300'000'000;
+constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000;
 constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
 constexpr std::int64_t kPatience_ns =
     6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
