@@ -110,6 +110,9 @@ void ChatterTruth::add(double time, double spindle_angle, const Eigen::Vector3d&
   Millisecond& now = milliseconds_[millisecond];
   now.peak = std::max(now.peak, motion.norm());
   now.fast_peak = std::max(now.fast_peak, fast.norm());
+  now.square += motion.squaredNorm();
+  now.fast_square += fast.squaredNorm();
+  ++now.samples;
   now.disturbed = now.disturbed || disturbed;
   now.unsettled = now.unsettled || spindle_angle < settled_from_;
 }

@@ -30,7 +30,9 @@ class ChatterTruth {
   void add(double time, double spindle_angle, const Eigen::Vector3d& displacement, bool disturbed);
 
   struct Millisecond {
-    double peak = 0.0, fast_peak = 0.0;  // m, of what does not repeat, and of what of it is faster than 80 Hz
+    double peak = 0.0, fast_peak = 0.0;      // m, of what does not repeat, and of what of it is faster than 80 Hz
+    double square = 0.0, fast_square = 0.0;  // m^2, sums over the samples
+    int samples = 0;
     bool disturbed = false;
     bool unsettled = false;  // disturbed, or its mean still holds what was before the disturbance
   };

@@ -17,7 +17,7 @@ constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
-constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kLastsCycles = 10.0;  // until the effect is there
+constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kMostSettling_s = 2.5;  // until the effect is there
 constexpr double kSwingsToAct = 2.0;
 constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
 constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
@@ -113,9 +113,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   if (acting && !refused) return;
   if (heard.chatter) {
     const bool fading = !(heard.indicator >= 1.0);
-    const bool may_be_forced =
-        heard.kind == ChatterKind::unknown && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns);
-    if (fading || may_be_forced) return;
+    if (fading || (may_be_forced(in) && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns))) return;
   }
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
   if (correcting() && !refused) {  // it had its time and did not help: the next one
@@ -204,7 +202,8 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   const MonitorView& heard = *in.monitor;
   ChatterSituation s;
   s.structural = !heard.chatter || heard.kind == ChatterKind::structural;
-  s.chatter_frequency_hz = heard.single_line ? heard.chatter_frequency_hz : kNaN;
+  s.chatter_frequency_hz = frequency_of_chatter(in);
+  s.vibration_hz = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
@@ -216,6 +215,22 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
     s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);
   s.remembered = memory_.recall(place(in));
   return s;
+}
+
+// NaN where the tool is thrown about without a line.
+double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !heard.single_line) return kNaN;
+  return in.lobes == nullptr ? heard.chatter_frequency_hz
+                             : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
+}
+
+// A line of unknown kind may be forced, unless chatter is predicted there.
+bool Compensator::may_be_forced(const CompensatorInputs& in) const noexcept {
+  if (in.monitor->kind != ChatterKind::unknown) return false;
+  const bool predicted = in.lobes != nullptr && margin_at(prediction(in), in.monitor->speed) < 0.0 &&
+                         explains(*in.lobes, in.monitor->speed, frequency_of_chatter(in));
+  return !predicted;
 }
 
 // The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
@@ -238,11 +253,9 @@ void Compensator::remember(const CompensatorInputs& in) noexcept {
 
 std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {
   if (settings_.mode == RuntimeMode::shadow) return kShadowAct_ns;
-  const MonitorView& heard = *in.monitor;
-  const double frequency_hz = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
   double s = motion_.arrives_at() - motion_time(in.now_ns) + kLasts_s +
              kLastsTimeConstants * settings_.limits.spindle_time_constant_s;
-  if (frequency_hz > kLastsCycles) s += kLastsCycles / frequency_hz;
+  s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, kMostSettling_s);
   if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
   return to_ns(s);
 }

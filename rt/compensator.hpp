@@ -70,6 +70,8 @@ class Compensator {
   [[nodiscard]] Prediction prediction(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutPlace place(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutSetting programmed(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] double frequency_of_chatter(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool may_be_forced(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool reason_is_gone(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] std::int64_t time_to_act_ns(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double motion_time(std::int64_t now_ns) const noexcept {

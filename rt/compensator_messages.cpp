@@ -59,7 +59,10 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   candidate_ = candidate;
   remembered_ = candidate.remembered;
   phase_ = candidate.kind == CorrectionKind::stop_request ? Phase::stopped : Phase::acting;
-  chatter_frequency_hz_ = heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz;
+  const double of_tool = frequency_of_chatter(in);
+  chatter_frequency_hz_ = !heard.chatter        ? heard.structural_frequency_hz
+                          : std::isnan(of_tool) ? heard.chatter_frequency_hz
+                                                : of_tool;
   next_publish_ns_ = in.now_ns;
   act_until_ns_ = in.now_ns + time_to_act_ns(in);
   ShortText note{};

@@ -36,19 +36,22 @@ Rung speed_rung(const ChatterSituation& s, const Attempts& attempts, const Compe
   const double depth = s.prediction.axial_depth;
   if (!may(CorrectionKind::spindle_speed, attempts, depth, kMostSpeeds)) return {};
   const Attempts::Speeds tried = attempts.speeds(depth);
-  const SpeedChoice choice = choose_speed({s.structural ? kNaN : s.chatter_frequency_hz,
-                                           s.teeth,
-                                           s.present.speed,
-                                           s.programmed.speed,
-                                           s.prediction,
-                                           {tried.speed.data(), tried.count}},
-                                          limits);
+  SpeedQuestion question;
+  question.chatter_frequency_hz = s.structural ? kNaN : s.chatter_frequency_hz;
+  question.vibration_hz = s.vibration_hz;
+  question.teeth = s.teeth;
+  question.speed = s.present.speed;
+  question.programmed_speed = s.programmed.speed;
+  question.prediction = s.prediction;
+  question.tried = {tried.speed.data(), tried.count};
+  const SpeedChoice choice = choose_speed(question, limits);
   if (!choice.found()) return {};
   Rung rung;
   rung.candidate.kind = CorrectionKind::spindle_speed;
   rung.candidate.setting = s.programmed;
   rung.candidate.setting.speed = choice.target;
   rung.candidate.lobe = choice.lobe;
+  rung.candidate.settle_s = choice.decay_s;
   rung.candidate.margin_before = choice.margin_before;
   rung.candidate.margin_after = choice.margin_after;
   rung.candidate.limited_by = choice.limited_by;

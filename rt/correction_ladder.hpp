@@ -20,6 +20,7 @@ struct Candidate {
   CutSetting setting;
   int lobe = 0;                // k of n = 60 f_c / (N k); 0: from the lobes, or no speed
   bool remembered = false;     // it worked here before
+  double settle_s = 0.0;       // expected decay once the setting is reached
   double margin_before = 0.0;  // a_lim/a - 1; NaN unknown
   double margin_after = 0.0;
   std::int32_t limited_by = 0;
@@ -58,6 +59,7 @@ class Attempts {
 struct ChatterSituation {
   bool structural = false;            // of the robot's structure alone: the tool's recipe n_k does not apply
   double chatter_frequency_hz = 0.0;  // NaN: no single line
+  double vibration_hz = 0.0;          // the same, or of the structure; NaN: not known
   int teeth = 0;
   CutSetting present;  // as it is now: measured speed, the feed and direction that are set
   CutSetting programmed;

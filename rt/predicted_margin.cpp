@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dsp/numbers.hpp"
+#include "models/machining.hpp"
 
 namespace stillcut {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: no pocket is entered more exactly
 constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
 constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
+constexpr double kSidebandFound = 0.03;   // nearer than this to the prediction: its sideband
 
 double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
   return diagram == nullptr ? kNaN : margin_at(*diagram, speed / p.frequency_scale, p.axial_depth);
@@ -75,6 +77,14 @@ double heard_frequency_scale(const LobeDiagram& diagram, double speed, double he
   const double scale = heard_hz / predicted_frequency(diagram, speed);
   const double off = std::abs(scale - 1.0);
   return off > kSameFrequency && off < kOtherFrequency ? scale : 1.0;
+}
+
+double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept {
+  const double predicted = predicted_frequency(diagram, speed);
+  const double tooth_passing_hz = teeth * speed / kTwoPi;
+  if (explains(diagram, speed, heard_hz) || !(tooth_passing_hz > 0.0) || std::isnan(predicted)) return heard_hz;
+  const double base = heard_hz - std::round((heard_hz - predicted) / tooth_passing_hz) * tooth_passing_hz;
+  return std::abs(base - predicted) < kSidebandFound * predicted ? base : heard_hz;
 }
 
 bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {

@@ -29,6 +29,10 @@ struct Prediction {
 // explains and by less than another mode would; 1 otherwise, or where nothing is predicted.
 [[nodiscard]] double heard_frequency_scale(const LobeDiagram& diagram, double speed, double heard_hz) noexcept;
 
+// The frequency of the chatter itself where what is heard may be one of its sidebands, f_c + j N n/60: the one nearest
+// to what is predicted at this speed (rad/s), if it comes near; otherwise as heard.
+[[nodiscard]] double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept;
+
 // Whether a heard frequency is near one that the diagram knows: of a mode, or of chatter at this speed.
 [[nodiscard]] bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept;
 

@@ -18,8 +18,9 @@ constexpr int kBesideSteps = 6;          // to each side
 constexpr double kHighestLobe = 1e6;     // beyond it speeds and frequency do not belong together
 constexpr int kMostLobes = 64;           // bounds the work; so high up the lobes run into one another
 constexpr double kLeastGain = 0.1;       // of margin: what is only better must be better by this
-constexpr double kPlenty = 0.5;          // of safe margin; more is worth nothing
-constexpr double kWorth_s = 0.5;         // of that much
+constexpr double kAway = 2.3;            // natural logarithm of the tenth to which the vibration has to fall
+constexpr double kUsualDamping = 0.02, kUsualFrequency_hz = 500.0;  // of what vibrates, where nothing is known
+constexpr double kLeastSafeMargin = 0.02, kMostSafeMargin = 1.0;    // beyond these an estimate of decay says nothing
 
 struct Candidate {
   double target = 0.0;
@@ -33,15 +34,34 @@ double move_time(const SpeedQuestion& q, const CompensationLimits& limits, doubl
   return plan.error == TrajectoryError::none ? plan.trajectory.duration() : kNaN;
 }
 
-double worth(const SpeedChoice& c) noexcept {
-  const double margin = std::isnan(c.safe_margin) ? 0.0 : std::clamp(c.safe_margin, 0.0, kPlenty);
-  return kWorth_s * margin / kPlenty - c.move_s;
+double damping_of(const LobeDiagram* lobes, double frequency_hz) noexcept {
+  double damping = kUsualDamping, nearest = kInfinity;
+  if (lobes == nullptr || !lobes->valid) return damping;
+  for (int m = 0; m < std::clamp(lobes->mode_count, 0, LobeDiagram::kMaxModes); ++m) {
+    const ModeSummary& mode = lobes->modes[static_cast<std::size_t>(m)];
+    if (const double off = std::abs(mode.frequency_hz - frequency_hz); off < nearest) {
+      nearest = off;
+      damping = mode.damping_ratio;
+    }
+  }
+  return damping;
 }
+
+// Far below its limit a mode decays with its own damping, at the limit not at all; between, in proportion.
+double decay_time(const SpeedQuestion& q, double safe_margin) noexcept {
+  const double margin = std::isnan(safe_margin) ? kLeastSafeMargin : safe_margin;
+  const double m = std::clamp(margin, kLeastSafeMargin, kMostSafeMargin);
+  const double frequency_hz = q.vibration_hz > 0.0 ? q.vibration_hz : kUsualFrequency_hz;
+  const double damping = damping_of(q.prediction.here, frequency_hz);
+  return kAway / (damping * kTwoPi * frequency_hz * m / (1.0 + m));
+}
+
+double until_quiet(const SpeedChoice& c) noexcept { return c.move_s + c.decay_s; }
 
 bool better(const SpeedChoice& a, const SpeedChoice& b) noexcept {
   if (a.grounds != b.grounds) return a.grounds > b.grounds;
   if (a.grounds == SpeedGrounds::improved && a.safe_margin != b.safe_margin) return a.safe_margin > b.safe_margin;
-  return worth(a) > worth(b);
+  return until_quiet(a) < until_quiet(b);
 }
 
 class Search {
@@ -88,6 +108,7 @@ class Search {
     if (c.grounds == kNone) return kNone;
     c.move_s = move_time(q_, limits_, target);
     if (std::isnan(c.move_s)) return kNone;
+    c.decay_s = decay_time(q_, c.safe_margin);
     if (better(c, best_)) best_ = c;
     return c.grounds;
   }

@@ -14,6 +14,7 @@ namespace stillcut {
 
 struct SpeedQuestion {
   double chatter_frequency_hz = 0.0;  // NaN: no line heard, or chatter of the structure: the lobes alone answer
+  double vibration_hz = 0.0;          // of what has to die out; NaN: not known
   int teeth = 0;
   double speed = 0.0;             // present, rad/s
   double programmed_speed = 0.0;  // rad/s, at which the feed was programmed
@@ -34,15 +35,17 @@ struct SpeedChoice {
   double margin_after = 0.0;   // the same, of the target itself
   double safe_margin = 0.0;    // see safe_margin_at; NaN unknown
   double move_s = 0.0;         // time of the jerk-limited move
+  double decay_s = 0.0;        // expected from there on, to a tenth of the vibration
   std::int32_t limited_by = 0;
   int confidence_percent = 0;
 
   [[nodiscard]] bool found() const noexcept { return grounds != SpeedGrounds::none; }
 };
 
-// The speed with the best grounds; among equal ones the one that is reached soonest, a wide margin being worth up to
-// half a second of move. Always inside the limits, never predicted worse than the present speed, never one that was
-// tried, nor within half a per cent of the present one.
+// The speed with the best grounds; among equal ones the one with which the vibration is soonest over: the time of the
+// move and that of the decay, which a wide margin makes short (the more so, the slower the vibration). Always inside
+// the limits, never predicted worse than the present speed, never one that was tried, nor within half a per cent of the
+// present one.
 [[nodiscard]] SpeedChoice choose_speed(const SpeedQuestion& question, const CompensationLimits& limits) noexcept;
 
 }  // namespace stillcut

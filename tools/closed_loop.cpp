@@ -72,6 +72,7 @@ class DataTimeMonitor {
 
 void Heard::add(const Output& output, std::int64_t origin_ns) {
   if (output.type == Output::Type::event) events.push_back(output.event);
+  if (output.type == Output::Type::correction) corrections.push_back(output.correction);
   if (output.type != Output::Type::status) return;
   const Status& status = output.status;
   trace.push_back({static_cast<double>(status.stamp_ns - origin_ns) * 1e-9, status.indicator, status.spindle_speed_rpm,

@@ -16,7 +16,8 @@ namespace stillcut {
 // What the monitor said in a run; stamps are on the machine's clock.
 struct Heard {
   std::vector<Event> events;
-  std::vector<TracePoint> trace;  // time_s since the machine's start
+  std::vector<Correction> corrections;  // every message, in data time
+  std::vector<TracePoint> trace;        // time_s since the machine's start
 
   void add(const Output& output, std::int64_t origin_ns);
 };

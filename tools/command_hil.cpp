@@ -66,6 +66,8 @@ nlohmann::ordered_json score_json(const HilScore& score, const HilRun& run) {
           {"chatter_start_s", chatter ? Json(score.spells.front().start) : Json(nullptr)},
           {"chatter_frequency_hz", chatter ? Json(score.spells.front().frequency_hz) : Json(nullptr)},
           {"corrections_refused", machine.controller().refused()},
+          {"removed_mm3_per_min", or_null(score.removed_mm3_per_min)},
+          {"stopped", score.stopped},
           {"frames_sent", machine.frames_sent()},
           {"frames_lost", machine.frames_lost()},
           {"behind_ms", run.plant ? Json(std::max(0.0, run.plant->behind_ms)) : Json(nullptr)}};
@@ -86,6 +88,8 @@ void print_verdict(const Scenario& scenario, const HilScore& score, bool shadow)
               shadow ? " (shadow: shown, not followed)" : "");
   std::printf("  peak displacement %.0f µm", score.peak_displacement_um);
   if (score.ra_um) std::printf(", wall Ra %.2f µm", *score.ra_um);
+  if (score.removed_mm3_per_min) std::printf(", %.0f mm³ a minute", *score.removed_mm3_per_min);
+  if (score.stopped) std::printf(", stopped on request");
   std::printf("\n");
 }
 

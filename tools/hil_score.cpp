@@ -31,11 +31,13 @@ std::vector<double> onset_times(const VirtualMachine& machine, std::span<const E
   return times;
 }
 
+// As long as the feed goes on; without it the tool only rubs.
 double depth_at(const VirtualMachine& machine, double time) {
   const auto& moments = machine.moments();
   if (moments.empty()) return 0.0;
   const auto at = static_cast<std::size_t>(std::max(time, 0.0) * 1e3);
-  return moments[std::min(at, moments.size() - 1)].axial_depth;
+  const MachineMoment& moment = moments[std::min(at, moments.size() - 1)];
+  return moment.removal_rate > 0.0 ? moment.axial_depth : 0.0;
 }
 
 // Died down by itself or by the correction, not because the tool left the part or the program took less.
@@ -68,6 +70,10 @@ HilScore score_run(const VirtualMachine& machine, std::span<const Event> events)
   for (const Event& event : events)
     score.corrections += event.type == EventType::correction && std::isfinite(event.spindle_speed_rpm) ? 1 : 0;
   score.peak_displacement_um = 1e6 * machine.peak_displacement();
+  score.stopped = machine.controller().stopped();
+  constexpr double kMm3 = 1e9, kMinute = 60.0;
+  if (machine.cutting_time() > 0.0)
+    score.removed_mm3_per_min = kMm3 * kMinute * machine.removed_volume() / machine.cutting_time();
   if (const double ra = machine.roughness(); std::isfinite(ra)) score.ra_um = 1e6 * ra;
   return score;
 }

@@ -160,7 +160,7 @@ MillingConditions VirtualMachine::conditions_at(double time, const RobotState& p
   conditions.axial_depth = program.axial_depth;
   conditions.radial_depth = program.radial_depth;
   conditions.spindle_speed = controller_.spindle_speed();
-  conditions.feed_direction = program.feed_direction;
+  conditions.feed_direction = program.feed_direction + controller_.feed_turn();
   conditions.feed_per_tooth =
       program.feed_rate * controller_.feed_override() * kTwoPi / (tool_.teeth * conditions.spindle_speed);
   for (const InterruptedCut& cut : scenario_.interrupted) {
@@ -194,7 +194,7 @@ bool VirtualMachine::changes_abruptly(const MillingConditions& next) const {
   const double per_second = sample_rate_hz_;
   return std::abs(next.axial_depth - now.axial_depth) * per_second > kAbruptDepth ||
          std::abs(next.radial_depth - now.radial_depth) * per_second > kAbruptDepth ||
-         std::abs(next.feed_direction - now.feed_direction) * per_second > kAbruptTurn ||
+         std::abs(next.feed_direction - now.feed_direction) * per_second > kAbruptTurn || controller_.feed_moves() ||
          (next.axial_depth > 0.0) != (now.axial_depth > 0.0);
 }
 
@@ -228,35 +228,46 @@ void VirtualMachine::set_sensor_faults(double time) {
   encoder_.set_faults(now);
 }
 
-void VirtualMachine::record(bool disturbed) {
+void VirtualMachine::record(const RobotState& program, bool disturbed) {
   const MillingState& s = milling_.state();
   truth_.add(s.time, s.spindle_angle, s.displacement, disturbed);
   wall_.add(s, milling_.conditions(), 1.0 / sample_rate_hz_);
   vibration_.push_back(static_cast<float>(s.acceleration.x()));
   const double displacement = s.displacement.norm();
   peak_displacement_ = std::max(peak_displacement_, displacement);
+  MachineMoment moment;
+  moment.time = s.time;
+  moment.axial_depth = s.axial_depth;
+  moment.spindle_speed = s.spindle_speed;
+  moment.programmed_speed = rpm_to_rad_s(program.spindle_speed_rpm);
+  count_removed(moment);
   const auto millisecond = static_cast<std::size_t>(s.time * 1e3);
-  if (millisecond >= moments_.size()) {
-    MachineMoment moment;
-    moment.time = s.time;
-    moment.axial_depth = s.axial_depth;
-    moment.spindle_speed = s.spindle_speed;
-    moment.programmed_speed = scheduled_value(scenario_.spindle_speed, s.time, cut_.spindle_speed);
-    moments_.resize(millisecond + 1, moment);
-  }
+  if (millisecond >= moments_.size()) moments_.resize(millisecond + 1, moment);
   moments_.back().displacement = std::max(moments_.back().displacement, displacement);
+}
+
+// What the tool takes from the part as the feed really is.
+void VirtualMachine::count_removed(MachineMoment& moment) {
+  const MillingConditions& now = milling_.conditions();
+  const double step = 1.0 / sample_rate_hz_, width = cut_.milling == Milling::slot ? tool_.diameter : now.radial_depth;
+  moment.feed_rate = now.feed_per_tooth * tool_.teeth * now.spindle_speed / kTwoPi;
+  moment.feed_direction = now.feed_direction;
+  moment.removal_rate = now.axial_depth * width * moment.feed_rate;
+  removed_ += moment.removal_rate * step;
+  cutting_time_ += now.axial_depth > 0.0 ? step : 0.0;
 }
 
 MachineOutput VirtualMachine::advance() {
   const double time = static_cast<double>(++samples_) / sample_rate_hz_;
-  const RobotState program = program_at(time);
+  if (!controller_.stopped()) program_time_ = time;
+  const RobotState program = program_at(program_time_);
   const std::span<const ControllerMessage> messages = controller_.advance(time, program);
-  move_structure(time);
+  move_structure(program_time_);
   set_sensor_faults(time);
-  const MillingConditions conditions = conditions_at(time, program);
+  const MillingConditions conditions = conditions_at(program_time_, program);
   const bool struck = strike(time), disturbed = struck || changes_abruptly(conditions);
   const MillingState& state = milling_.advance(conditions);
-  record(disturbed);
+  record(program, disturbed);
   frames_.clear();
   std::uniform_real_distribution<double> chance;
   for (const CanFrame& frame : encoder_.advance(state.time, state.velocity, state.spindle_speed)) {

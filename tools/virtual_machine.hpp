@@ -30,6 +30,8 @@ struct MachineOutput {
 struct MachineMoment {
   double time = 0.0, axial_depth = 0.0;                // s, m
   double spindle_speed = 0.0, programmed_speed = 0.0;  // rad/s
+  double feed_rate = 0.0, feed_direction = 0.0;        // m/s, rad, as they are
+  double removal_rate = 0.0;                           // m^3/s
   double displacement = 0.0;                           // m, largest of the millisecond
 };
 
@@ -57,6 +59,8 @@ class VirtualMachine {
   [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
   [[nodiscard]] double peak_displacement() const { return peak_displacement_; }  // m
   [[nodiscard]] double roughness() const { return wall_.roughness(); }           // m, of the wall; NaN: none
+  [[nodiscard]] double removed_volume() const { return removed_; }               // m^3
+  [[nodiscard]] double cutting_time() const { return cutting_time_; }            // s with the tool in the part
   [[nodiscard]] std::int64_t frames_sent() const { return frames_sent_; }
   [[nodiscard]] std::int64_t frames_lost() const { return frames_lost_; }
 
@@ -68,7 +72,8 @@ class VirtualMachine {
   [[nodiscard]] bool changes_abruptly(const MillingConditions& next) const;
   void move_structure(double time);
   void set_sensor_faults(double time);
-  void record(bool disturbed);
+  void record(const RobotState& program, bool disturbed);
+  void count_removed(MachineMoment& moment);
 
   Scenario scenario_;
   Tool tool_;
@@ -81,13 +86,15 @@ class VirtualMachine {
   MillingSimulation milling_;
   CanEncoder encoder_;
   VirtualController controller_;
+  double program_time_ = 0.0;  // s; stands still where a stop request holds the program
   double next_posture_s_ = 0.0;
   std::size_t next_knock_ = 0;
   std::mt19937_64 random_;
 
   std::vector<CanFrame> frames_;
   std::int64_t samples_ = 0, frames_sent_ = 0, frames_lost_ = 0;
-  double peak_displacement_ = 0.0;  // m
+  double peak_displacement_ = 0.0;             // m
+  double removed_ = 0.0, cutting_time_ = 0.0;  // m^3, s
   WallRecorder wall_;
   ChatterTruth truth_;
   std::vector<MachineMoment> moments_;

@@ -76,6 +76,10 @@ struct ControllerScript {
   double lag = 0.015;                   // s, from hearing a correction to acting on it
   double spindle_time_constant = 0.3;   // s, first order
   double spindle_acceleration = 0.0;    // rad/s^2, the most that the drive gives; 0: the cell's
+  double turn_rate = deg_to_rad(60.0);  // rad/s, of the feed direction where a correction turns it
+  std::vector<CorrectionKind> accepts{CorrectionKind::spindle_speed, CorrectionKind::speed_variation,
+                                      CorrectionKind::feed_direction, CorrectionKind::feed_override,
+                                      CorrectionKind::stop_request};
   std::vector<ControllerFault> faults;  // in time
 };
 

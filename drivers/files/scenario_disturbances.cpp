@@ -78,6 +78,23 @@ void read_losses(TomlSection& root, Scenario& scenario) {
   }
 }
 
+// The kinds of correction that the controller can do; a release belongs to each.
+void read_accepts(TomlSection& section, ControllerScript& script) {
+  using Kind = CorrectionKind;
+  const std::vector<std::pair<std::string, Kind>> kinds{{"spindle_speed", Kind::spindle_speed},
+                                                        {"speed_variation", Kind::speed_variation},
+                                                        {"feed_direction", Kind::feed_direction},
+                                                        {"feed_override", Kind::feed_override},
+                                                        {"stop", Kind::stop_request}};
+  std::vector<std::string> known;
+  for (const auto& [name, kind] : kinds) known.push_back(name);
+  const std::vector<std::string> given = section.names("accepts", known);
+  if (!section.has("accepts")) return;
+  script.accepts.clear();
+  for (const auto& [name, kind] : kinds)
+    if (std::find(given.begin(), given.end(), name) != given.end()) script.accepts.push_back(kind);
+}
+
 void read_controller(TomlSection section, Scenario& scenario) {
   using Kind = ControllerFaultKind;
   ControllerScript& script = scenario.controller;
@@ -87,6 +104,8 @@ void read_controller(TomlSection section, Scenario& scenario) {
       section.number("spindle_time_constant_s", from(0.2, 0.5), script.spindle_time_constant);
   script.spindle_acceleration = rpm_to_rad_s(section.number("spindle_acceleration_rpm_per_s", above(0, 1e6), 1.0));
   if (!section.has("spindle_acceleration_rpm_per_s")) script.spindle_acceleration = 0.0;
+  script.turn_rate = deg_to_rad(section.number("turn_rate_deg_per_s", above(0, 3600), rad_to_deg(script.turn_rate)));
+  read_accepts(section, script);
   for (TomlSection entry : section.tables("fault")) {
     ControllerFault fault;
     fault.span = read_time_span(entry, scenario.duration);

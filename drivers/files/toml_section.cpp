@@ -92,6 +92,21 @@ std::string TomlSection::chosen_name(std::string_view key, const std::vector<std
   return value;
 }
 
+std::vector<std::string> TomlSection::names(std::string_view key, const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  const toml::node* node = find(key, false);
+  if (node == nullptr) return names;
+  const std::string wanted = "a list of any of \"" + joined(known) + "\"";
+  if (!node->is_array()) fail_type(key, *node, wanted);
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) fail_type(key, element, wanted);
+    names.push_back(element.as_string()->get());
+    if (std::find(known.begin(), known.end(), names.back()) == known.end())
+      fail(key, "\"" + names.back() + "\" is not known; give " + wanted);
+  }
+  return names;
+}
+
 std::vector<double> TomlSection::numbers(std::string_view key, Bounds bounds) {
   std::vector<double> values;
   if (const toml::node* node = find(key, false)) {

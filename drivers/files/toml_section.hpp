@@ -46,6 +46,7 @@ class TomlSection {
            std::optional<T> fallback = {});
 
   // Lists; empty when the key is absent.
+  std::vector<std::string> names(std::string_view key, const std::vector<std::string>& known);
   std::vector<double> numbers(std::string_view key, Bounds bounds);
   std::vector<std::array<double, 2>> points(std::string_view key);                              // [[x, y], ...]
   std::vector<std::array<double, 2>> pairs(std::string_view key, Bounds first, Bounds second);  // [[a, b], ...]

@@ -97,8 +97,8 @@ TEST(VirtualController, ObeysAfterItsLagAndAnswers) {
   EXPECT_TRUE(bench.acks[0].accepted);
   EXPECT_EQ(bench.acks[0].sequence, 7);
   EXPECT_DOUBLE_EQ(bench.acks[0].spindle_speed_rpm, 9000);
-  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 9000 / kProgrammedRpm);
   bench.run_until(0.4);
+  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 9000 / kProgrammedRpm);
   EXPECT_GT(bench.rpm(), 8300);
 }
 
@@ -108,8 +108,8 @@ TEST(VirtualController, ReturnsToNominalWhenCorrectionsStop) {
   EXPECT_GT(bench.rpm(), 8900);
   bench.run_until(1.41 + 0.5 + 0.01);  // the last message came at 1.4 s and holds for 0.5 s
   EXPECT_FALSE(bench.controller.corrected());
-  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 1.0);
   bench.run_until(4.0);
+  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 1.0);
   EXPECT_NEAR(bench.rpm(), kProgrammedRpm, 2.0);
 }
 
@@ -158,6 +158,23 @@ Correction with_override(Correction c, double feed) {
   c.feed_override = feed;
   return c;
 }
+Correction of_kind(CorrectionKind kind, std::int64_t sequence) {  // at the programmed speed and feed
+  Correction c = ask_for(0, sequence, RuntimeMode::active, kind);
+  c.feed_override = 1.0;
+  return c;
+}
+Correction vary(double rpm, std::int64_t sequence, double ratio, double hz) {
+  Correction c = ask_for(rpm, sequence, RuntimeMode::active, CorrectionKind::speed_variation);
+  c.feed_override = 1.0;
+  c.speed_variation_ratio = ratio;
+  c.speed_variation_hz = hz;
+  return c;
+}
+Correction turn_to(double direction, std::int64_t sequence) {
+  Correction c = of_kind(CorrectionKind::feed_direction, sequence);
+  c.feed_direction = direction;
+  return c;
+}
 
 INSTANTIATE_TEST_SUITE_P(
     All, VirtualControllerRefuses,
@@ -167,8 +184,11 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedCorrection{"NoNumber", ask_for(std::nan(""), 1), "speed is outside the spindle"},
         RefusedCorrection{"FeedTooHigh", with_override(ask_for(9000, 1), 3.0), "feed override is out of range"},
         RefusedCorrection{"Expired", with_validity(ask_for(9000, 1), 5), "too late"},
-        RefusedCorrection{"OtherKind", ask_for(9000, 1, RuntimeMode::active, CorrectionKind::feed_direction),
-                          "cannot do this kind of correction"}),
+        RefusedCorrection{"FeedStands", with_override(ask_for(9000, 1), 0.0), "feed override is out of range"},
+        RefusedCorrection{"VariesTooMuch", vary(8000, 1, 0.6, 1.0), "speed variation is out of range"},
+        RefusedCorrection{"VariesTooFast", vary(8000, 1, 0.1, 100.0), "speed variation is out of range"},
+        RefusedCorrection{"VariesAboutNoSpeed", vary(0, 1, 0.1, 1.0), "speed is outside the spindle"},
+        RefusedCorrection{"NoDirection", turn_to(std::nan(""), 1), "feed direction is out of range"}),
     [](const auto& info) { return info.param.name; });
 
 TEST(VirtualController, LocksCorrectionsWhereItIsToRefuse) {
@@ -214,6 +234,122 @@ TEST(VirtualController, TakesNoCorrectionThatIsOlderThanOneSeen) {
   ASSERT_EQ(bench.acks.size(), 1U);
   EXPECT_EQ(bench.acks[0].sequence, 5);
   EXPECT_LT(bench.rpm(), 9000);
+}
+
+TEST(VirtualController, VariesTheSpeedAboutItsMeanAsTheSpindleCanFollow) {
+  Bench bench;
+  double lowest = 1e9, highest = 0.0;
+  for (std::int64_t n = 1; bench.time < 4.0; ++n) {  // the same variation asked for again goes on, it does not restart
+    bench.controller.receive(vary(9000, n, 0.02, 0.5), bench.time);
+    bench.run_until(bench.time + 0.13, [&](double time) {
+      if (time < 2.0) return;
+      lowest = std::min(lowest, bench.rpm());
+      highest = std::max(highest, bench.rpm());
+    });
+  }
+  const double followed = 1.0 / std::hypot(1.0, kTwoPi * 0.5 * 0.3);  // a first-order lag of 0.3 s at 0.5 Hz
+  EXPECT_NEAR(highest, 9000 * (1.0 + 0.02 * followed), 5.0);
+  EXPECT_NEAR(lowest, 9000 * (1.0 - 0.02 * followed), 5.0);
+  EXPECT_EQ(bench.controller.refused(), 0);
+}
+
+TEST(VirtualController, VariesNoFurtherThanTheSpindleGoes) {
+  Bench bench;
+  bench.program.spindle_speed_rpm = 6100;
+  double lowest = 1e9;
+  for (std::int64_t n = 1; bench.time < 8.0; ++n) {
+    bench.controller.receive(vary(6100, n, 0.4, 0.2), bench.time);
+    bench.run_until(bench.time + 0.1, [&](double) { lowest = std::min(lowest, bench.rpm()); });
+  }
+  EXPECT_GE(lowest, 6000.0 - 1e-6);
+  EXPECT_LT(lowest, 6010.0);
+}
+
+TEST(VirtualController, TurnsTheFeedAtItsRateAndBackWhenReleased) {
+  Bench bench;
+  bench.program.feed_direction = deg_to_rad(10);
+  for (std::int64_t n = 1; bench.time < 1.0; ++n) {
+    bench.controller.receive(turn_to(deg_to_rad(40), n), bench.time);
+    bench.run_until(bench.time + 0.1, [&](double time) {
+      EXPECT_TRUE(bench.controller.feed_moves() || time < 0.03 || time > 0.45);
+      EXPECT_LE(rad_to_deg(bench.controller.feed_turn()), std::max(0.0, 60.0 * (time - 0.015)) + 1e-6);
+    });
+  }
+  EXPECT_NEAR(rad_to_deg(bench.controller.feed_turn()), 30.0, 1e-6);
+  EXPECT_FALSE(bench.controller.feed_moves());
+  EXPECT_NEAR(rad_to_deg(bench.states.back().feed_direction), 40.0, 1e-6);  // the robot tells where it goes
+  bench.controller.receive(of_kind(CorrectionKind::release, 100), bench.time);
+  bench.run_until(1.0 + 0.025 + 0.25);
+  EXPECT_GT(rad_to_deg(bench.controller.feed_turn()), 10.0);
+  bench.run_until(1.0 + 0.025 + 0.55);
+  EXPECT_NEAR(bench.controller.feed_turn(), 0.0, 1e-9);
+  EXPECT_DOUBLE_EQ(bench.rpm(), kProgrammedRpm);
+}
+
+TEST(VirtualController, TurnsTheShortWay) {
+  Bench bench;
+  bench.program.feed_direction = deg_to_rad(170);
+  bench.controller.receive(turn_to(deg_to_rad(-170), 1), 0.0);
+  bench.run_until(0.45);
+  EXPECT_NEAR(rad_to_deg(bench.controller.feed_turn()), 20.0, 1e-6);
+}
+
+TEST(VirtualController, FollowsAFeedOverrideWithoutAJump) {
+  Bench bench;
+  double before = 1.0, fastest = 0.0;
+  for (std::int64_t n = 1; bench.time < 0.9; ++n) {
+    bench.controller.receive(with_override(of_kind(CorrectionKind::feed_override, n), 0.5), bench.time);
+    bench.run_until(bench.time + 0.1, [&](double) {
+      fastest = std::max(fastest, std::abs(bench.controller.feed_override() - before) / kControllerStep);
+      before = bench.controller.feed_override();
+    });
+  }
+  EXPECT_NEAR(fastest, 1.0 / VirtualController::kFullFeedIn, 1e-6);
+  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 0.5);
+  EXPECT_DOUBLE_EQ(bench.states.back().feed_rate, 0.01);
+  EXPECT_DOUBLE_EQ(bench.rpm(), kProgrammedRpm);  // no speed named: the programmed one
+  bench.run_until(2.0);
+  EXPECT_DOUBLE_EQ(bench.controller.feed_override(), 1.0);
+}
+
+TEST(VirtualController, StopsForGood) {
+  Bench bench;
+  bench.run_until(0.1);
+  bench.controller.receive(with_override(of_kind(CorrectionKind::stop_request, 1), 0.0), bench.time);
+  bench.run_until(0.1 + 0.015 + 0.0082 + VirtualController::kFullFeedIn);
+  EXPECT_TRUE(bench.controller.stopped());
+  EXPECT_EQ(bench.controller.feed_override(), 0.0);
+  ASSERT_EQ(bench.acks.size(), 1U);
+  EXPECT_TRUE(bench.acks[0].accepted);
+  EXPECT_EQ(bench.acks[0].feed_override, 0.0);
+  bench.controller.receive(of_kind(CorrectionKind::release, 2), bench.time);
+  bench.run_until(1.0);
+  bench.keep_asking(9000, 2.0);  // neither a release nor another correction starts it again, nor the lapse of time
+  bench.run_until(4.0);
+  EXPECT_EQ(bench.controller.feed_override(), 0.0);
+  EXPECT_EQ(bench.states.back().feed_rate, 0.0);
+}
+
+TEST(VirtualController, RefusesTheKindsItsScriptLeavesOut) {
+  ControllerScript script;
+  script.accepts = {CorrectionKind::spindle_speed};
+  Bench bench{script};
+  using Kind = CorrectionKind;
+  const std::vector<Correction> asked{vary(8000, 1, 0.1, 1.0),
+                                      turn_to(1.0, 2),
+                                      with_override(of_kind(Kind::feed_override, 3), 0.5),
+                                      with_override(of_kind(Kind::stop_request, 4), 0.0),
+                                      of_kind(Kind::release, 5),
+                                      ask_for(9000, 6)};
+  for (const Correction& correction : asked) bench.controller.receive(correction, 0.0);
+  bench.run_until(0.3);
+  ASSERT_EQ(bench.acks.size(), asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EXPECT_EQ(bench.acks[i].accepted, i >= 4) << i;
+    EXPECT_EQ(bench.reasons[i], i >= 4 ? "" : "cannot do this kind of correction");
+  }
+  EXPECT_FALSE(bench.controller.stopped());
+  EXPECT_EQ(bench.controller.feed_turn(), 0.0);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <optional>
 
 #include "drivers/can/decoder.hpp"
 #include "tests/tools/run_program.hpp"
@@ -209,6 +211,77 @@ TEST(VirtualMachine, SpindleLagsBehindTheProgram) {
   EXPECT_NEAR(sent.rpm.front(), 8500, 0.2);
   EXPECT_GT(sent.rpm.back(), 8550);
   EXPECT_LT(sent.rpm.back(), 8900);
+}
+
+// The machine with one correction after the other from given times on, until the end.
+template <class Look>
+void run_corrected(VirtualMachine& machine, const std::function<std::optional<Correction>(double)>& ask,
+                   const Look& look) {
+  std::int64_t sequence = 0;
+  while (!machine.ended()) {
+    if (++sequence % 1000 == 0)
+      if (std::optional<Correction> c = ask(machine.time())) {
+        c->sequence = sequence;
+        c->valid_for_ms = 500;
+        c->mode = RuntimeMode::active;
+        machine.receive(*c);
+      }
+    machine.advance();
+    look();
+  }
+}
+
+TEST(VirtualMachine, AStopEndsTheCutWithoutChatterAndHoldsTheProgram) {
+  Scenario scenario = sound_cut(2.5);
+  scenario.axial_depth = {{0.0, 1.5e-3}, {1.5, 1.5e-3}, {1.5, 0.0}};
+  VirtualMachine machine{machine_cell(), scenario, kMachineOrigin};
+  Correction stop;
+  stop.kind = CorrectionKind::stop_request;
+  stop.feed_override = 0.0;
+  double late_chip = 0.0, early_chip = 0.0;
+  run_corrected(
+      machine, [&](double time) { return time > 0.5 && time < 0.6 ? std::optional{stop} : std::nullopt; },
+      [&] {
+        double& chip = machine.time() < 0.5 ? early_chip : late_chip;
+        if (machine.time() < 0.5 || machine.time() > 1.2) chip = std::max(chip, machine.state().chip);
+      });
+  EXPECT_TRUE(machine.controller().stopped());
+  EXPECT_LT(late_chip, 0.05 * early_chip);  // a tooth that is not fed rubs: its edge still presses
+  EXPECT_EQ(machine.moments().back().feed_rate, 0.0);
+  EXPECT_NEAR(machine.moments().back().axial_depth, 1.5e-3, 1e-12);  // the program would have left the part
+  EXPECT_TRUE(machine.truth().spells().empty());
+  EXPECT_LT(machine.state().displacement.norm(), 1e-6);
+}
+
+TEST(VirtualMachine, TheFeedTurnsInAStableCutWithoutChatter) {
+  VirtualMachine machine{machine_cell(), sound_cut(3.0), kMachineOrigin};
+  Correction turn;
+  turn.kind = CorrectionKind::feed_direction;
+  turn.feed_direction = deg_to_rad(45);
+  double furthest = 0.0;
+  run_corrected(
+      machine, [&](double time) { return time > 0.5 && time < 1.5 ? std::optional{turn} : std::nullopt; },
+      [&] { furthest = std::max(furthest, machine.moments().back().feed_direction); });
+  EXPECT_NEAR(furthest, deg_to_rad(45), 1e-9);
+  EXPECT_NEAR(machine.moments().back().feed_direction, 0.0, 1e-9);
+  EXPECT_TRUE(machine.truth().spells().empty());
+}
+
+TEST(VirtualMachine, RemovesDepthTimesWidthTimesTheWayOfTheFeed) {
+  Scenario scenario = sound_cut(2.0);
+  scenario.axial_depth = {{0.0, 1.5e-3}, {1.0, 1.5e-3}, {1.0, 0.0}};
+  const Cell cell = machine_cell();
+  VirtualMachine machine{cell, scenario, kMachineOrigin};
+  Correction half;
+  half.kind = CorrectionKind::feed_override;
+  half.feed_override = 0.5;
+  run_corrected(
+      machine, [&](double time) { return time > 0.4 ? std::optional{half} : std::nullopt; }, [] {});
+  const double feed = cell.cut->feed_per_tooth * cell.tool->teeth * cell.cut->spindle_speed / kTwoPi;
+  const double whole = 1.5e-3 * cell.cut->radial_depth * feed * machine.cutting_time();
+  EXPECT_NEAR(machine.cutting_time(), 1.0, 1e-3);
+  EXPECT_GT(machine.removed_volume(), 0.70 * whole);  // whole to 0.42 s or so, half from 0.53 s on
+  EXPECT_LT(machine.removed_volume(), 0.77 * whole);
 }
 
 }  // namespace

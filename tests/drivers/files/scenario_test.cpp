@@ -68,6 +68,8 @@ rate = 0.01
 cycle_ms = 4
 lag_ms = 20
 spindle_time_constant_s = 0.2
+turn_rate_deg_per_s = 30
+accepts = ["spindle_speed", "stop"]
 [[controller.fault]]
 start_s = 1
 end_s = 2
@@ -105,6 +107,8 @@ TEST(ScenarioFile, IsReadInSiUnits) {
   EXPECT_DOUBLE_EQ(scenario.sensor_faults[0].offset, 30.0);
   EXPECT_DOUBLE_EQ(scenario.sensor_faults[1].span.end, 5.0);  // an open end is the scenario's
   EXPECT_DOUBLE_EQ(scenario.controller.cycle, 0.004);
+  EXPECT_DOUBLE_EQ(scenario.controller.turn_rate, deg_to_rad(30));
+  EXPECT_EQ(scenario.controller.accepts, (std::vector{CorrectionKind::spindle_speed, CorrectionKind::stop_request}));
   ASSERT_EQ(scenario.controller.faults.size(), 1U);
   EXPECT_EQ(scenario.controller.faults[0].kind, ControllerFaultKind::refuses);
 }
@@ -116,6 +120,7 @@ TEST(ScenarioFile, LeavesToTheCellWhatItDoesNotSay) {
   EXPECT_TRUE(scenario.axial_depth.empty());
   EXPECT_FALSE(scenario.milling.has_value());
   EXPECT_FALSE(scenario.chatter.has_value());
+  EXPECT_EQ(scenario.controller.accepts.size(), 5U);
 }
 
 // `from` in the example becomes `to`; the error names the line where `at` then stands, the key, and says `words`.
@@ -152,6 +157,10 @@ const std::vector<ScenarioMistake> kScenarioMistakes{
     {"rate = 0.01", "rate = 1.5", "rate", "lost_frames.rate", "out of range"},
     {"cycle_ms = 4", "cycle_ms = 40", "cycle_ms", "controller.cycle_ms", "from 4 to 12"},
     {"lag_ms = 20", "lag_ms = 1", "lag_ms", "controller.lag_ms", "from 10 to 20"},
+    {"turn_rate_deg_per_s = 30", "turn_rate_deg_per_s = 0", "turn_rate", "controller.turn_rate_deg_per_s", "above 0"},
+    {"\"stop\"", "\"halt\"", "accepts", "controller.accepts", "\"halt\" is not known; give a list of any of"},
+    {"[\"spindle_speed\", \"stop\"]", "\"stop\"", "accepts", "controller.accepts", "give a list of any of"},
+    {"\"stop\"", "3", "accepts", "controller.accepts", "give a list of any of"},
     {"kind = \"refuses\"", "kind = \"sulks\"", "kind = \"sulks\"", "controller.fault.kind", "is not known"},
     {"in_air_s = 0.1", "in_air_s = 0", "in_air_s", "interrupted.in_air_s", "above 0"},
     {"seed = 7", "sead = 7", "sead", "sead", "did you mean seed?"},
