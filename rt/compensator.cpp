@@ -14,10 +14,14 @@ constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
 constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
+constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
 constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1, kMostSettling_s = 2.5;  // until the effect is there
+constexpr double kFallen = 0.1, kTolerated = 2.0;                                   // of the loudest; of what was left
+constexpr double kFalls = 0.7;                                                      // from one look to the next
+constexpr std::int64_t kLookAgain_ns = 300'000'000;
 constexpr double kSwingsToAct = 2.0;
 constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
 constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
@@ -49,7 +53,9 @@ void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
 
 // Why nothing may be asked of the controller now; nullptr when all conditions hold.
 const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
-  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped) return "the monitor cannot tell";
+  // A sensor that is driven beyond its range by the very chatter that is being corrected: the move goes on to its end.
+  const bool loud = in.monitor->doubts == kSaturated && phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !loud) return "the monitor cannot tell";
   if (settings_.mode != RuntimeMode::active) return nullptr;
   if (!in.controller_alive) return "controller silent";
   if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
@@ -94,9 +100,9 @@ void Compensator::hear_nothing(const CompensatorInputs& in, OutputQueue& out) no
   if (phase_ == Phase::acting && in.now_ns >= act_until_ns_) phase_ = Phase::holding;
   const bool in_cut = in.monitor->state == State::cut;
   if (phase_ == Phase::holding && in_cut && has_run(quiet_since_ns_, in.now_ns, kQuietHasWorked_ns)) remember(in);
-  if (phase_ == Phase::holding && in_cut && has_run(quiet_since_ns_, in.now_ns, kQuietMayReturn_ns) &&
-      reason_is_gone(in))
-    start_return(in);
+  const bool may_return = phase_ == Phase::holding && in_cut && has_run(quiet_since_ns_, in.now_ns, kQuietMayReturn_ns);
+  run_watch(safe_since_ns_, may_return && reason_is_gone(in), in.now_ns);
+  if (has_run(safe_since_ns_, in.now_ns, kSafeMayReturn_ns)) start_return(in);
   if (phase_ == Phase::returning && motion_time(in.now_ns) >= motion_.arrives_at())
     release(in, "back at the program", out);
 }
@@ -108,6 +114,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
     return_failed_ = true;
     return start(in, Candidate{candidate_}, out);
   }
+  loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
   const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
   const bool refused = correcting() && attempts_.refused(candidate_.kind);
   if (acting && !refused) return;
@@ -116,12 +123,30 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
     if (fading || (may_be_forced(in) && !has_run(chatter_since_ns_, in.now_ns, kUnknownKindWaits_ns))) return;
   }
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
+  if (correcting() && !refused && gives_more_time(in)) return;
   if (correcting() && !refused) {  // it had its time and did not help: the next one
     attempts_.add(candidate_, in.axial_depth);
     memory_.forget(place(in));
   }
   const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
   next.kind == CorrectionKind::release ? say_none(in, next, out) : start(in, next, out);
+}
+
+// What falls goes on falling, and what has fallen to a tenth and stays there is the forced vibration of the new speed
+// or an echo of it: both are the success that was asked for.
+bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !heard.single_line || candidate_.kind == CorrectionKind::stop_request) return false;
+  const double amplitude = heard.chatter_amplitude;
+  if (amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
+    tolerated_ = std::max(tolerated_, amplitude);
+    phase_ = Phase::holding;
+    return true;
+  }
+  const bool falls = phase_ == Phase::acting && amplitude < kFalls * checked_;
+  checked_ = amplitude;
+  act_until_ns_ = in.now_ns + kLookAgain_ns;
+  return falls;
 }
 
 // Nothing was tried, as nobody follows a shadow; but a frequency that has drifted asks for another speed.
@@ -143,7 +168,8 @@ bool Compensator::stop_for_saturation(const CompensatorInputs& in, OutputQueue& 
   const bool may = settings_.limits.may_stop && !refused_ && phase_ != Phase::stopped &&
                    !attempts_.refused(CorrectionKind::stop_request) &&
                    (settings_.mode == RuntimeMode::shadow || in.controller_alive);
-  if (!may || !has_run(saturated_since_ns_, in.now_ns, kSaturatedStops_ns)) return false;
+  const bool acts = phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  if (!may || acts || !has_run(saturated_since_ns_, in.now_ns, kSaturatedStops_ns)) return false;
   Candidate stop;
   stop.kind = CorrectionKind::stop_request;
   stop.margin_before = stop.margin_after = margin_at(prediction(in), in.monitor->speed);
@@ -210,6 +236,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
   s.present.speed = heard.speed;
   s.prediction = prediction(in);
+  s.prediction.axial_depth = in.coming_depth;
   // The lobes lie where they are heard, as long as the program's own speed is the one that is heard.
   if (!correcting() && !s.structural && in.lobes != nullptr)
     s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);

@@ -33,6 +33,7 @@ struct CompensatorInputs {
   const LobeDiagram* lobes_ahead = nullptr;  // least limits along the announced path; nullptr: none announced
   const RobotState* robot = nullptr;         // nullptr: none heard
   double axial_depth = 0.0;                  // m; NaN unknown
+  double coming_depth = 0.0;                 // m, that the cut is on its way to; NaN unknown
   double feed_direction = 0.0;               // rad, as it is
   double nominal_speed = 0.0;                // rad/s, as programmed; 0: take the measured speed
   bool controller_alive = false;             // robot_state arrives
@@ -60,6 +61,7 @@ class Compensator {
   void retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void start(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
   void begin_motion(const CompensatorInputs& in) noexcept;
+  bool gives_more_time(const CompensatorInputs& in) noexcept;
   void start_return(const CompensatorInputs& in) noexcept;
   void say_none(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
   void publish(const CompensatorInputs& in, OutputQueue& out) noexcept;
@@ -93,7 +95,11 @@ class Compensator {
   std::int64_t sequence_ = 0, first_sequence_ = 0;  // of the last message, of the first of this candidate
   std::int64_t began_ns_ = 0, act_until_ns_ = 0, next_publish_ns_ = 0;
   std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this correction
-  std::int64_t chatter_since_ns_ = 0, quiet_since_ns_ = 0, air_since_ns_ = 0, saturated_since_ns_ = 0;  // 0: is not
+  std::int64_t chatter_since_ns_ = 0, quiet_since_ns_ = 0, air_since_ns_ = 0, saturated_since_ns_ = 0,
+               safe_since_ns_ = 0;  // 0: is not
+  double loudest_ = 0.0;            // m/s^2, of this chatter
+  double checked_ = 0.0;            // when its effect was last looked at
+  double tolerated_ = 0.0;          // what is left of it and stays; 0: nothing was left
   double chatter_frequency_hz_ = 0.0, frequency_scale_ = 1.0;
   double chatter_depth_ = 0.0, chatter_margin_ = 0.0;  // m; predicted at the programmed speed when it was heard
 };

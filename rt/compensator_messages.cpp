@@ -49,6 +49,7 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   const ChatterSituation now = situation(in);
   if (!correcting()) {
     begin_motion(in);
+    loudest_ = tolerated_ = 0.0;
     answered_ns_ = in.now_ns;
     frequency_scale_ = now.prediction.frequency_scale;
     chatter_depth_ = in.axial_depth;
@@ -57,6 +58,7 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   if (!motion_.move_to(candidate.setting, motion_time(in.now_ns), settings_.limits, 1.0)) return;
   first_sequence_ = sequence_ + 1;
   candidate_ = candidate;
+  checked_ = kInfinity;
   remembered_ = candidate.remembered;
   phase_ = candidate.kind == CorrectionKind::stop_request ? Phase::stopped : Phase::acting;
   const double of_tool = frequency_of_chatter(in);

@@ -74,6 +74,7 @@ class Core {
   void put_status(std::int64_t now_ns) noexcept;
   void update_prior() noexcept;
   [[nodiscard]] double axial_depth() const noexcept;
+  [[nodiscard]] double coming_depth() const noexcept;
   [[nodiscard]] double predicted_margin() const noexcept;
 
   CoreSettings settings_;
@@ -87,7 +88,8 @@ class Core {
   std::size_t first_lobes_ = 0, next_lobes_count_ = 0;
   double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown
   RobotState robot_;
-  bool started_ = false;  // by the first frame
+  double depth_rate_ = 0.0;  // m/s, as the robot's states tell
+  bool started_ = false;     // by the first frame
   bool robot_heard_ = false;
   bool out_of_order_told_ = false;
   std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well

@@ -12,7 +12,8 @@ namespace {
 constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: no pocket is entered more exactly
 constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
 constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
-constexpr double kSidebandFound = 0.03;   // nearer than this to the prediction: its sideband
+constexpr double kScaleMax = 0.06;
+constexpr double kSidebandFound = 0.03;  // nearer than this to the prediction: its sideband
 
 double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
   return diagram == nullptr ? kNaN : margin_at(*diagram, speed / p.frequency_scale, p.axial_depth);
@@ -76,7 +77,7 @@ double safe_margin_at(const Prediction& p, double speed) noexcept {
 double heard_frequency_scale(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {
   const double scale = heard_hz / predicted_frequency(diagram, speed);
   const double off = std::abs(scale - 1.0);
-  return off > kSameFrequency && off < kOtherFrequency ? scale : 1.0;
+  return off > kSameFrequency && off < kScaleMax ? scale : 1.0;
 }
 
 double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept {

@@ -24,6 +24,7 @@ class Bench {
     view.stamp_ns = now_ns;
     in.now_ns = now_ns;
     in.monitor = &view;
+    in.coming_depth = in.axial_depth;
     compensator_.step(in, queue_);
     for (const Output& output : queue_.items()) {
       if (output.type == Output::Type::correction) corrections.push_back(output.correction);
