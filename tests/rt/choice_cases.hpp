@@ -61,7 +61,8 @@ class ChoiceCases {
                                                std::isfinite(limit) ? frequency_hz : kNaN};
     }
     d.mode_count = whole(0, 4);
-    for (int m = 0; m < d.mode_count; ++m) d.modes[static_cast<std::size_t>(m)].frequency_hz = between(20, 2000);
+    for (int m = 0; m < d.mode_count; ++m)
+      d.modes[static_cast<std::size_t>(m)] = {between(20, 2000), between(0.005, 0.1)};
     if (chance(0.5)) d.speed_scatter = between(0.0, 0.04), d.depth_scatter = between(0.0, 0.4);
     d.direction_count = whole(0, LobeDiagram::kMaxDirections);
     d.direction_speed = between(spindle.min_speed, spindle.max_speed);

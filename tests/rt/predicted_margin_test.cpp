@@ -158,6 +158,28 @@ TEST(HeardFrequencyScale, IsOneWhereNothingIsHeardOrPredicted) {
   EXPECT_EQ(heard_frequency_scale(stable, speed, heard_hz), 1.0);
 }
 
+TEST(BaseFrequency, ASidebandLeadsBackToTheChatterAndAnythingElseIsLeftAsHeard) {
+  LobeDiagram diagram = diagram_at_700_hz();
+  const double speed = rpm_to_rad_s(9000), passing_hz = 300.0;  // of two teeth
+  for (const double chatter_hz : {690.0, 700.0, 715.0})
+    for (const int j : {-2, -1, 0, 1, 2, 5})
+      EXPECT_NEAR(base_frequency(diagram, speed, 2, chatter_hz + j * passing_hz), chatter_hz, 1e-9);
+  for (const double other_hz : {850.0, 1150.0, 540.0}) EXPECT_EQ(base_frequency(diagram, speed, 2, other_hz), other_hz);
+  diagram.modes[0].frequency_hz = 1000.0;  // a mode of its own there: heard as it is
+  diagram.mode_count = 1;
+  EXPECT_EQ(base_frequency(diagram, speed, 2, 1000.0), 1000.0);
+}
+
+TEST(BaseFrequency, WithoutAPredictionOrAToothPassingItIsAsHeard) {
+  const LobeDiagram diagram = diagram_at_700_hz();
+  const double speed = rpm_to_rad_s(9000);
+  EXPECT_EQ(base_frequency({}, speed, 2, 1000.0), 1000.0);
+  EXPECT_EQ(base_frequency(diagram, speed, 0, 1000.0), 1000.0);
+  for (const double bad : {0.0, -speed, kNaN, kInfinity, rpm_to_rad_s(20000)})
+    EXPECT_EQ(base_frequency(diagram, bad, 2, 1000.0), 1000.0);
+  EXPECT_TRUE(std::isnan(base_frequency(diagram, speed, 2, kNaN)));
+}
+
 TEST(Explains, AFrequencyNearAModeOrNearThePredictedChatterIsKnown) {
   LobeDiagram diagram = diagram_at_700_hz();
   diagram.modes[0].frequency_hz = 20.0;
