@@ -80,11 +80,9 @@ class ChoiceCases {
 // Diagrams that a prediction points to, kept with it.
 struct KeptPrediction {
   std::optional<LobeDiagram> here, ahead;
-  double axial_depth = 1e-3, frequency_scale = 1.0;
+  double axial_depth = 1e-3;
 
-  [[nodiscard]] Prediction view() const {
-    return {here ? &*here : nullptr, ahead ? &*ahead : nullptr, axial_depth, frequency_scale};
-  }
+  [[nodiscard]] Prediction view() const { return {here ? &*here : nullptr, ahead ? &*ahead : nullptr, axial_depth}; }
 };
 
 inline KeptPrediction random_prediction(ChoiceCases& cases, const SpindleLimits& spindle) {
@@ -92,7 +90,6 @@ inline KeptPrediction random_prediction(ChoiceCases& cases, const SpindleLimits&
   if (cases.chance(0.8)) p.here = cases.diagram(spindle);
   if (cases.chance(0.3)) p.ahead = cases.diagram(spindle);
   if (cases.chance(0.1)) p.axial_depth = kNaN;
-  if (cases.chance(0.3)) p.frequency_scale = cases.between(0.94, 1.06);
   return p;
 }
 

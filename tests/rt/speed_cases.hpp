@@ -46,16 +46,16 @@ inline bool may_choose(const SpeedCase& c, double speed, double apart_from_tried
   const Prediction p = c.kept.view();
   for (const double tried : c.tried)
     if (std::abs(tried - speed) < apart_from_tried * speed) return false;
-  // Where something is predicted about both, it speaks for the move; also of a speed just beyond the diagram's end.
+  // What is known is not left for what is not; and where both are predicted, the prediction speaks for the move.
   const double before = margin_at(p, c.speed), after = margin_at(p, speed), safe = safe_margin_at(p, speed);
-  const bool compared = !std::isnan(before) && !std::isnan(safe);
-  const bool no_better = compared && !(after > before && safe > before);
+  const bool no_better = !std::isnan(before) && !(after > before && safe > before);
   return spindle_may_stay(c.limits, speed) && tooth_may_take(c.limits, speed, c.programmed_speed) &&
          std::abs(speed - c.speed) >= 0.005 * c.speed && !no_better;
 }
 
 inline bool heard_is_known(const SpeedCase& c) {
-  return c.kept.here && (std::isnan(c.chatter_frequency_hz) || explains(*c.kept.here, c.speed, c.chatter_frequency_hz));
+  return c.kept.here && (std::isnan(c.chatter_frequency_hz) || margin_at(c.kept.view(), c.speed) < 0.0 ||
+                         explains(*c.kept.here, c.speed, c.chatter_frequency_hz));
 }
 
 // The speeds in step that may be chosen; so far up that lobes run into one another no more are looked at.
@@ -75,7 +75,7 @@ inline std::vector<double> points_in_reach(const SpeedCase& c) {
   std::vector<double> list;
   if (!c.kept.here) return list;
   for (int i = 0; i < c.kept.here->point_count; ++i) {
-    const double speed = c.kept.here->points[static_cast<std::size_t>(i)].speed * c.kept.frequency_scale;
+    const double speed = c.kept.here->points[static_cast<std::size_t>(i)].speed;
     if (may_choose(c, speed, 0.025)) list.push_back(speed);
   }
   return list;

@@ -215,29 +215,6 @@ TEST_F(RandomSpeeds, WhereNothingMayBeChosenItSaysSo) {
   EXPECT_GT(none, 200);
 }
 
-// The lobes lie at speeds higher by the scale: as if the diagram had been computed so.
-TEST_F(RandomSpeeds, AFrequencyScaleMovesTheChosenPocketByItself) {
-  int found = 0;
-  for (int i = 0; i < 2000; ++i) {
-    SpeedCase c = next();
-    c.chatter_frequency_hz = kNaN;
-    if (!c.kept.here) c.kept.here = cases_.diagram(c.limits.spindle);
-    c.kept.ahead.reset();
-    c.kept.here->speed_scatter = 0.0;
-    c.kept.frequency_scale = cases_.between(0.94, 1.06);
-    SpeedCase moved = c;
-    for (LobePoint& point : moved.kept.here->points) point.speed *= c.kept.frequency_scale;
-    moved.kept.frequency_scale = 1.0;
-    const SpeedChoice choice = choose_speed(c.question(), c.limits);
-    const SpeedChoice wanted = choose_speed(moved.question(), c.limits);
-    ASSERT_EQ(choice.grounds, wanted.grounds);
-    if (!choice.found()) continue;
-    ++found;
-    EXPECT_NEAR(choice.target, wanted.target, 1e-9 * wanted.target);
-  }
-  EXPECT_GT(found, 250);
-}
-
 TEST(SpeedChoice, QuestionsWithoutAnAnswerAreToldNotComputed) {
   CompensationLimits limits;
   limits.spindle = {rpm_to_rad_s(6000), rpm_to_rad_s(12000), 300, 3000};
