@@ -22,17 +22,17 @@ const char* milling_name(Milling milling) {
   return milling == Milling::down ? "down" : milling == Milling::up ? "up" : "slot";
 }
 
-// Ten samples of three axes in a frame, +-330 g.
+// Ten samples of three axes in a frame, +-500 g.
 std::string dbc_text() {
   std::ostringstream out;
   out << "VERSION \"\"\nNS_ :\nBS_:\nBU_: SENSOR DRIVE MONITOR\n\nBO_ 288 Vibration: 64 SENSOR\n"
          " SG_ Counter : 0|16@1+ (1,0) [0|65535] \"\" MONITOR\n";
   for (int i = 0, bit = 32; i < kSamplesAFrame; ++i)
     for (const char axis : {'X', 'Y', 'Z'}) {
-      out << " SG_ " << axis << i << " : " << bit << "|16@1- (0.1,0) [0|0] \"m/s^2\" MONITOR\n";
+      out << " SG_ " << axis << i << " : " << bit << "|16@1- (0.15,0) [0|0] \"m/s^2\" MONITOR\n";
       bit += 16;
     }
-  out << "\nBO_ 304 Spindle: 8 DRIVE\n SG_ Speed : 0|32@1+ (0.1,0) [0|60000] \"rpm\" MONITOR\n\n"
+  out << "\nBO_ 304 Spindle: 8 DRIVE\n SG_ Speed : 0|32@1+ (0.15,0) [0|60000] \"rpm\" MONITOR\n\n"
          "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"reserved\",\"reserved\","
          "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\","
          "\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\n"
@@ -76,7 +76,7 @@ std::string scenario_text(const RandomCell& cell) {
     out << "; pocket at " << csv_number(rad_s_to_rpm(cell.pocket_speed)) << " rpm, margin "
         << csv_number(cell.pocket_margin);
   out << ".\ncell = \"cell.toml\"\nduration_s = " << csv_number(cell.duration)
-      << "\nsensor_noise_m_per_s2 = 0.6\nseed = " << cell.seed << "\n\n[program]\naxial_depth_mm = [";
+      << "\nsensor_noise_m_per_s2 = 0.75\nseed = " << cell.seed << "\n\n[program]\naxial_depth_mm = [";
   for (std::size_t i = 0; i < cell.axial_depth.size(); ++i)
     out << (i == 0 ? "[" : ", [") << csv_number(cell.axial_depth[i].time) << ", "
         << csv_number(1e3 * cell.axial_depth[i].value) << ']';
