@@ -72,7 +72,7 @@ struct Counted {
 };
 
 std::string indices(const std::vector<const CellRun*>& runs) {
-  constexpr std::size_t kShown = 12;
+  constexpr std::size_t kShown = 40;
   std::string text;
   for (std::size_t i = 0; i < std::min(runs.size(), kShown); ++i)
     text.append(i == 0 ? " (cells " : " ").append(std::to_string(runs[i]->index));
@@ -141,12 +141,14 @@ std::string medians(const std::vector<CellRun>& runs) {
       if (run.problem.empty() && run.metrics.chattered) values.push_back(value(run.metrics));
     return median(values);
   };
+  const double down = of([](const RunMetrics& m) { return m.down_after; });
   return printed(
-      "medians: alarm %.0f ms after the chatter, down %.2f s after the alarm (allowed %.2f), peak %.1f um, "
+      "medians: alarm %.0f ms after the chatter, down %s after the alarm (allowed %.2f s), peak %.1f um, "
       "remains %.2f um, pocket itself %.2f um, sound cut before %.2f um\n",
       1e3 * of([](const RunMetrics& m) { return m.alarm - m.chatter_from; }),
-      of([](const RunMetrics& m) { return m.down_after; }), of([](const RunMetrics& m) { return m.allowed; }),
-      1e6 * of([](const RunMetrics& m) { return m.peak; }), 1e6 * of([](const RunMetrics& m) { return m.settled; }),
+      (down < RunMetrics::kFar ? printed("%.2f s", down) : "not").c_str(),
+      of([](const RunMetrics& m) { return m.allowed; }), 1e6 * of([](const RunMetrics& m) { return m.peak; }),
+      1e6 * of([](const RunMetrics& m) { return m.settled; }),
       1e6 * of([](const RunMetrics& m) { return m.in_pocket; }), 1e6 * of([](const RunMetrics& m) { return m.sound; }));
 }
 
