@@ -1,30 +1,25 @@
 #include "tools/compare_runs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "models/lobes.hpp"
+#include "models/modal_refit.hpp"
 #include "models/wall_roughness.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
 namespace {
 
+constexpr int kMomentsLooked = 60;                    // of the program, for its depth limit
 constexpr double kBelowLimit = 0.9;                   // of the depth limit
 constexpr double kFullDepth = 0.95, kAtTheEnd = 1.0;  // of the deepest; s
 constexpr double kBeforeExit = 0.1;                   // s: nothing of the exit yet
-
-std::vector<double> values_of(const Schedule& schedule, double otherwise) {
-  std::vector<double> values;
-  for (const SchedulePoint& point : schedule) values.push_back(point.value);
-  if (values.empty()) values.push_back(otherwise);
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
-}
 
 // The schedule, nowhere above `most`: with a point where it crosses that.
 Schedule capped(const Schedule& schedule, double most) {
@@ -38,6 +33,26 @@ Schedule capped(const Schedule& schedule, double most) {
     result.push_back({schedule[i].time, std::min(schedule[i].value, most)});
   }
   return result;
+}
+
+// But for the depth.
+bool same_cut(const RobotState& a, const RobotState& b) {
+  return a.joint_position == b.joint_position && a.tcp_position == b.tcp_position &&
+         a.feed_direction == b.feed_direction && a.spindle_speed_rpm == b.spindle_speed_rpm &&
+         a.radial_depth == b.radial_depth;
+}
+
+// Depth limit of what is programmed at a moment, m; 0: unsound at every depth.
+double limit_of(const Cell& cell, const CellDynamics& dynamics, Cut cut, const RobotState& program) {
+  Posture posture;
+  posture.joints = program.joint_position;
+  posture.position = program.tcp_position;
+  const PredictedPosture predicted = with_few_modes(predict_posture(dynamics.map, posture, dynamics.interpolation));
+  cut.feed_direction = program.feed_direction;
+  cut.radial_depth = program.radial_depth;
+  const std::array<double, 1> speed{rpm_to_rad_s(program.spindle_speed_rpm)};
+  const double limit = depth_limits(*cell.tool, *cell.material, cut, predicted.posture.modes, speed, {}).front().depth;
+  return std::isnan(limit) ? 0.0 : limit;
 }
 
 // R_a of each sampling length, and the time at which its middle was cut.
@@ -79,26 +94,21 @@ ComparedRun run_once(std::string name, Cell cell, RuntimeMode mode, const Scenar
 }  // namespace
 
 double sound_depth(const Cell& cell, const Scenario& scenario) {
-  CellDynamics dynamics = read_cell_dynamics(cell);
-  std::vector<std::string> postures{scenario.posture};
-  for (const PostureMove& move : scenario.moves) postures.push_back(move.to);
+  const CellDynamics dynamics = read_cell_dynamics(cell);
+  const VirtualMachine machine{cell, scenario, 0};
   Cut cut = require(cell, cell.cut, "cut");
   if (scenario.milling) cut.milling = *scenario.milling;
-  const std::vector<double> speeds = values_of(scenario.spindle_speed, cut.spindle_speed);
-  const std::vector<double> directions = values_of(scenario.feed_direction, cut.feed_direction);
-  cut.radial_depth = values_of(scenario.radial_depth, cut.radial_depth).back();
   double least = std::numeric_limits<double>::infinity();
-  try {
-    for (const std::string& posture : postures) {
-      const std::vector<Mode> modes = stability_posture(cell, dynamics, posture).posture.modes;
-      for (const double direction : directions) {
-        cut.feed_direction = direction;
-        for (const DepthLimit& limit : depth_limits(*cell.tool, *cell.material, cut, modes, speeds, {}))
-          least = std::min(least, std::isnan(limit.depth) ? 0.0 : limit.depth);
-      }
+  std::optional<RobotState> before;
+  for (int i = 0; i <= kMomentsLooked; ++i) {
+    const RobotState program = machine.program_at(scenario.duration * i / kMomentsLooked);
+    if (!(program.axial_depth > 0.0) || (before && same_cut(*before, program))) continue;
+    before = program;
+    try {
+      least = std::min(least, limit_of(cell, dynamics, cut, program));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(cell.file.string(), 0, std::string("no depth can be called sound: ") + error.what());
     }
-  } catch (const std::invalid_argument& error) {
-    throw InputError(cell.file.string(), 0, std::string("no depth can be called sound: ") + error.what());
   }
   return kBelowLimit * least;
 }
@@ -106,8 +116,9 @@ double sound_depth(const Cell& cell, const Scenario& scenario) {
 std::vector<ComparedRun> compare_runs(const Cell& cell, const Scenario& scenario, std::int64_t origin_ns,
                                       const std::function<void(double)>& progress) {
   const double sound = sound_depth(cell, scenario);
-  const std::vector<double> depths = values_of(scenario.axial_depth, cell.cut->axial_depth);
-  const bool shallower = sound > 0.0 && depths.back() > sound;
+  double deepest = scenario.axial_depth.empty() ? cell.cut->axial_depth : 0.0;
+  for (const SchedulePoint& point : scenario.axial_depth) deepest = std::max(deepest, point.value);
+  const bool shallower = sound > 0.0 && deepest > sound;
   const double share = shallower ? 1.0 / 3.0 : 0.5;
   std::vector<ComparedRun> runs;
   const auto part = [&](double done) { progress(share * (static_cast<double>(runs.size()) + done)); };

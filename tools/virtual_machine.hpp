@@ -65,8 +65,10 @@ class VirtualMachine {
   [[nodiscard]] std::int64_t frames_sent() const { return frames_sent_; }
   [[nodiscard]] std::int64_t frames_lost() const { return frames_lost_; }
 
- private:
+  // What the program commands at a time.
   [[nodiscard]] RobotState program_at(double time) const;
+
+ private:
   [[nodiscard]] MillingConditions conditions_at(double time, const RobotState& program) const;
   [[nodiscard]] Posture posture_at(double time) const;
   [[nodiscard]] bool strike(double time);
