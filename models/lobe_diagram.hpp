@@ -14,6 +14,12 @@ struct LobePoint {
   double chatter_frequency_hz = 0.0;  // NaN where depth_limit is not finite
 };
 
+// The depth limit at one feed direction, at the speed that the diagram was asked for.
+struct DirectionLimit {
+  double direction = 0.0;    // rad, workpiece; a direction and its opposite have the same limit
+  double depth_limit = 0.0;  // m, as in LobePoint
+};
+
 struct ModeSummary {
   double frequency_hz = 0.0;
   double damping_ratio = 0.0;
@@ -22,14 +28,22 @@ struct ModeSummary {
 struct LobeDiagram {
   static constexpr int kMaxPoints = 256;
   static constexpr int kMaxModes = 16;
+  static constexpr int kMaxDirections = 24;
 
   bool valid = false;
   std::int64_t posture_stamp_ns = 0;  // stamp of the robot state it was computed for; 0: the cell file's posture
   std::int64_t usable_from_ns = 0;    // data time at which the core may start to use it
+  bool ahead = false;                 // the least limits along the announced path; false: of the present posture
+  std::int64_t usable_until_ns = 0;   // of one ahead: the end of what was announced
   int point_count = 0;
   int mode_count = 0;
+  int direction_count = 0;
+  double direction_speed = 0.0;                // rad/s, that the limits over direction are for
+  double speed_scatter = 0.0;                  // relative standard deviation of the speeds at which the lobes lie
+  double depth_scatter = 0.0;                  // relative standard deviation of the limits
   std::array<LobePoint, kMaxPoints> points{};  // equally spaced over the spindle's range, rising speed
   std::array<ModeSummary, kMaxModes> modes{};  // of the posture, rising frequency
+  std::array<DirectionLimit, kMaxDirections> directions{};  // rising, equally spaced over half a turn
 };
 
 static_assert(std::is_trivially_copyable_v<LobeDiagram>);

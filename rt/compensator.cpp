@@ -2,19 +2,46 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "dsp/integrity.hpp"
+#include "dsp/numbers.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr std::int32_t kValidFor_ms = 500;
-constexpr std::int64_t kPublishMoving_ns = 10'000'000, kPublishHolding_ns = 100'000'000;
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
+constexpr std::int64_t kUnpredictedWaits_ns = 300'000'000;
+constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
+constexpr std::int64_t kPatience_ns =
+    6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
 constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
+constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
+constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
+constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
+constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
+constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
+constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
+constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
+constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
+constexpr double kFalls = 0.7;                                             // from one look to the next
+constexpr std::int64_t kLookAgain_ns = 300'000'000;
+constexpr double kSwingsToAct = 2.0;
+constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
+constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
+constexpr double kBetterThanThen = 0.2;  // margin over the one with which it chattered
+constexpr double kMuchShallower = 0.7;   // of the depth that chattered against the prediction
 
 constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
+
+// Starts or stops a watch whose 0 means that it does not run.
+void run_watch(std::int64_t& since_ns, bool running, std::int64_t now_ns) noexcept {
+  since_ns = !running ? 0 : since_ns == 0 ? now_ns : since_ns;
+}
+bool has_run(std::int64_t since_ns, std::int64_t now_ns, std::int64_t long_ns) noexcept {
+  return since_ns != 0 && now_ns - since_ns >= long_ns;
+}
 
 }  // namespace
 
@@ -22,160 +49,283 @@ void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
   if (ack.sequence < first_sequence_ || ack.sequence > sequence_) return;  // no answer to what is asked now
   if (ack.accepted) {
     answered_ns_ = std::max(answered_ns_, ack.stamp_ns);
-  } else {
+  } else if (candidate_.kind == CorrectionKind::spindle_speed || phase_ == Phase::none) {
     refused_ = true;
+  } else {  // not every controller can do every kind
+    attempts_.refuse(candidate_.kind);
   }
 }
 
 // Why nothing may be asked of the controller now; nullptr when all conditions hold.
 const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
-  if (in.monitor->doubts != kNoDoubt) return "the monitor cannot tell";
+  // A sensor that is driven beyond its range by the very chatter that is being corrected: the move goes on to its end.
+  const bool loud = in.monitor->doubts == kSaturated && phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !loud) return "the monitor cannot tell";
   if (settings_.mode != RuntimeMode::active) return nullptr;
   if (!in.controller_alive) return "controller silent";
-  if (correcting_ && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
-  if (!in.monitor->chatter && !correcting_) refused_ = false;  // a new episode is a new question
+  if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
+  if (!in.monitor->chatter && !in.monitor->structural && !correcting()) refused_ = false;  // a new question
   return refused_ ? "controller refused or did not answer" : nullptr;
 }
 
 void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
+  const State state = in.monitor->state;
+  run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
+  if (stop_for_saturation(in, out)) return;
   if (const char* reason = reason_to_hold_back(in)) {
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
-    chatter_since_ns_ = 0;
+    chatter_since_ns_ = quiet_since_ns_ = 0;
     said_none_ = said_none_ && in.monitor->chatter;
     return;
   }
   held_back_ = false;
-  if (in.monitor->chatter) {
-    if (chatter_since_ns_ == 0) chatter_since_ns_ = in.now_ns;
-    consider(in, out);
+  const bool chatter = in.monitor->chatter || in.monitor->structural;
+  run_watch(chatter_since_ns_, chatter, in.now_ns);
+  run_watch(quiet_since_ns_, !chatter, in.now_ns);
+  if (phase_ == Phase::stopped) {
+    follow_stop(in, out);
+  } else if (chatter) {
+    hear_chatter(in, out);
   } else {
-    chatter_since_ns_ = 0;
-    said_none_ = false;
-    const State state = in.monitor->state;
-    if (correcting_ && (state == State::air || state == State::idle)) release(in, "cut is over", out);
+    hear_nothing(in, out);
   }
-  if (correcting_ && in.now_ns >= next_publish_ns_) publish(in, out);
+  if (correcting() && in.now_ns >= next_publish_ns_) publish(in, out);
 }
 
-void Compensator::consider(const CompensatorInputs& in, OutputQueue& out) noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (!heard.single_line) return;  // no frequency to put the teeth in step with
-  if (heard.kind == ChatterKind::unknown && in.now_ns - chatter_since_ns_ < kUnknownKindWaits_ns) return;
-  const bool fading = !(heard.indicator >= 1.0);
-  if (said_none_ || fading || (correcting_ && in.now_ns < act_until_ns_)) return;
-
-  SpeedQuestion question{
-      heard.chatter_frequency_hz,   settings_.teeth, heard.speed, in.axial_depth, settings_.spindle, in.lobes,
-      {tried_.data(), tried_count_}};
-  if (correcting_ && settings_.mode == RuntimeMode::shadow) {
-    question.tried = {};  // nothing was tried: nobody follows a shadow
-    const SpeedChoice choice = choose_speed(question);
-    if (choice.found && std::abs(choice.target - choice_.target) > kShadowRetarget * choice_.target)
-      start(in, choice, out);
+void Compensator::hear_nothing(const CompensatorInputs& in, OutputQueue& out) noexcept {
+  said_none_ = false;
+  if (has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns)) {
+    if (correcting()) release(in, "cut is over", out);
+    attempts_.clear();
+    return_failed_ = false;
     return;
   }
-  if (correcting_) {  // it had its time and did not help: the next one
-    tried_[tried_count_++] = choice_.target;
-    question.tried = {tried_.data(), tried_count_};
-  }
-  const SpeedChoice choice = choose_speed(question);
-  if (choice.found && tried_count_ < kMaxTried) {
-    start(in, choice, out);
-  } else {
-    say_none(in, choice, out);
-  }
+  if (phase_ == Phase::acting && in.now_ns >= act_until_ns_) phase_ = Phase::holding;
+  const bool in_cut = in.monitor->state == State::cut;
+  if (phase_ == Phase::holding && in_cut && has_run(quiet_since_ns_, in.now_ns, kQuietHasWorked_ns)) remember(in);
+  const bool may_return = phase_ == Phase::holding && in_cut && has_run(quiet_since_ns_, in.now_ns, kQuietMayReturn_ns);
+  run_watch(safe_since_ns_, may_return && reason_is_gone(in), in.now_ns);
+  if (has_run(safe_since_ns_, in.now_ns, kSafeMayReturn_ns)) start_return(in);
+  if (phase_ == Phase::returning && motion_time(in.now_ns) >= motion_.arrives_at())
+    release(in, "back at the program", out);
 }
 
-MotionState Compensator::setpoint(std::int64_t now_ns) const noexcept {
-  return ramp_.at(static_cast<double>(now_ns - started_ns_) * 1e-9);
-}
-
-void Compensator::start(const CompensatorInputs& in, const SpeedChoice& choice, OutputQueue& out) noexcept {
+void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const MonitorView& heard = *in.monitor;
-  const MotionState from = correcting_ ? setpoint(in.now_ns) : MotionState{0.0, heard.speed, 0.0};
-  const VelocityPlan plan =
-      plan_velocity(from, choice.target, 0.0, {settings_.spindle.acceleration, settings_.spindle.jerk});
-  if (plan.error != TrajectoryError::none) return;
-  if (!correcting_) {
-    // A programmed speed that the spindle cannot turn is none.
-    const bool programmed =
-        in.nominal_speed >= settings_.spindle.min_speed && in.nominal_speed <= settings_.spindle.max_speed;
-    base_speed_ = programmed ? in.nominal_speed
-                             : std::clamp(heard.speed, settings_.spindle.min_speed, settings_.spindle.max_speed);
-    answered_ns_ = in.now_ns;
-    first_sequence_ = sequence_ + 1;
+  if (said_none_) return;
+  if (phase_ == Phase::returning) {  // back to what worked, and no second try
+    return_failed_ = true;
+    return start(in, Candidate{candidate_}, out);
   }
-  correcting_ = true;
-  choice_ = choice;
-  chatter_frequency_hz_ = heard.chatter_frequency_hz;
-  ramp_ = plan.trajectory;
-  started_ns_ = next_publish_ns_ = in.now_ns;
-  act_until_ns_ = in.now_ns + (settings_.mode == RuntimeMode::shadow
-                                   ? kShadowAct_ns
-                                   : to_ns(ramp_.duration() + 4.0 * settings_.spindle_time_constant_s + 0.1));
-  char note[96];
-  std::snprintf(note, sizeof note, "%s k=%d from=%.0f margin_before=%.2f margin_after=%.2f",
-                settings_.mode == RuntimeMode::active ? "active" : "shadow", choice.lobe, rad_s_to_rpm(heard.speed),
-                choice.margin_before, choice.margin_after);
-  out.put(Event{heard.stamp_ns, EventType::correction, ChatterKind::unknown, chatter_frequency_hz_, heard.indicator,
-                rad_s_to_rpm(choice.target), short_text(note)});
+  loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
+  const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  const bool refused = correcting() && attempts_.refused(candidate_.kind);
+  if (acting && !refused) return;
+  if (!tool_chatters(in) && !structure_chatters(in)) return;
+  if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
+  if (correcting() && !refused && gives_more_time(in)) return;
+  if (correcting() && !refused) {  // it had its time and did not help: the next one
+    attempts_.add(candidate_, in.axial_depth);
+    memory_.forget(place(in));
+  }
+  const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
+  next.kind == CorrectionKind::release ? say_none(in, next, out) : start(in, next, out);
 }
 
-void Compensator::say_none(const CompensatorInputs& in, const SpeedChoice& choice, OutputQueue& out) noexcept {
-  choice_ = choice;
-  choice_.limited_by |= kNoStableSettingKnown;  // also where there were speeds left, but enough were tried in vain
-  release(in, "no stable speed known", out);
-  said_none_ = true;
-  out.put(Event{in.monitor->stamp_ns, EventType::correction, ChatterKind::unknown, in.monitor->chatter_frequency_hz,
-                in.monitor->indicator, std::nan(""), short_text("no stable speed known inside the spindle's limits")});
+// What falls goes on falling, and what has fallen to a tenth and stays there is the forced vibration of the new speed
+// or an echo of it: both are the success that was asked for.
+bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!tool_chatters(in) || !heard.single_line || candidate_.kind == CorrectionKind::stop_request) return false;
+  const double amplitude = heard.chatter_amplitude;
+  if (amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
+    tolerated_ = std::max(tolerated_, amplitude);
+    phase_ = Phase::holding;
+    return true;
+  }
+  const bool falls = phase_ == Phase::acting && amplitude < kFalls * checked_;
+  checked_ = amplitude;
+  act_until_ns_ = in.now_ns + kLookAgain_ns;
+  return falls;
 }
 
-void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcept {
-  const MotionState now = setpoint(in.now_ns);
-  const bool moving = static_cast<double>(in.now_ns - started_ns_) * 1e-9 < ramp_.duration();
-  next_publish_ns_ = in.now_ns + (moving ? kPublishMoving_ns : kPublishHolding_ns);
-  Correction c;
-  c.stamp_ns = in.now_ns;
-  c.sequence = ++sequence_;
-  c.valid_for_ms = kValidFor_ms;
-  c.mode = settings_.mode;
-  c.kind = CorrectionKind::spindle_speed;
-  c.spindle_speed_rpm =
-      rad_s_to_rpm(std::clamp(now.velocity, settings_.spindle.min_speed, settings_.spindle.max_speed));
-  c.spindle_speed_target_rpm = rad_s_to_rpm(choice_.target);
-  c.feed_override = base_speed_ > 0.0 ? c.spindle_speed_rpm / rad_s_to_rpm(base_speed_) : 1.0;
-  c.feed_direction = in.feed_direction;
-  c.chatter_frequency_hz = chatter_frequency_hz_;
-  c.predicted_margin_before = choice_.margin_before;
-  c.predicted_margin_after = choice_.margin_after;
-  c.limited_by = choice_.limited_by | (moving ? kLimitedByAcceleration : 0);
-  c.confidence_percent = static_cast<std::int8_t>(choice_.confidence_percent);
-  char reason[96];
-  std::snprintf(reason, sizeof reason, "n = 60 f_c / (N k), k = %d", choice_.lobe);
-  c.reason = short_text(reason);
-  out.put(c);
+// Nothing was tried, as nobody follows a shadow; but a frequency that has drifted asks for another speed.
+void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept {
+  act_until_ns_ = in.now_ns + kShadowAct_ns;
+  const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
+  const bool other_kind = next.kind != candidate_.kind;
+  const bool other_speed =
+      next.kind == CorrectionKind::spindle_speed &&
+      std::abs(next.setting.speed - candidate_.setting.speed) > kShadowRetarget * candidate_.setting.speed;
+  if (next.kind != CorrectionKind::release && (other_kind || other_speed)) start(in, next, out);
 }
 
-void Compensator::release(const CompensatorInputs& in, const char* reason, OutputQueue& out) noexcept {
-  correcting_ = false;
-  tried_count_ = 0;
-  Correction c;
-  c.stamp_ns = in.now_ns;
-  c.sequence = ++sequence_;
-  c.valid_for_ms = kValidFor_ms;
-  c.mode = settings_.mode;
-  c.kind = CorrectionKind::release;
-  const double nominal_rpm = rad_s_to_rpm(in.nominal_speed > 0.0 ? in.nominal_speed : in.monitor->speed);
-  c.spindle_speed_rpm = c.spindle_speed_target_rpm = nominal_rpm;
-  c.feed_direction = in.feed_direction;
-  c.chatter_frequency_hz = in.monitor->chatter_frequency_hz;
-  c.predicted_margin_before = c.predicted_margin_after = std::nan("");
-  c.limited_by = choice_.limited_by;
-  c.reason = short_text(reason);
-  out.put(c);
-  choice_ = {};
+// A sensor that a cut drives beyond its range cannot be listened to. Where that cut is predicted to chatter the tool is
+// in danger; to stop is then the only thing that can be said.
+bool Compensator::stop_for_saturation(const CompensatorInputs& in, OutputQueue& out) noexcept {
+  const bool in_air = air_since_ns_ != 0;
+  run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && !in_air, in.now_ns);
+  const bool may = settings_.limits.may_stop && !refused_ && phase_ != Phase::stopped &&
+                   !attempts_.refused(CorrectionKind::stop_request) &&
+                   (settings_.mode == RuntimeMode::shadow || in.controller_alive);
+  const bool acts = phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  if (!may || acts || !has_run(saturated_since_ns_, in.now_ns, kSaturatedStops_ns)) return false;
+  Candidate stop;
+  stop.kind = CorrectionKind::stop_request;
+  stop.margin_before = stop.margin_after = margin_at(prediction(in), in.monitor->speed);
+  if (!(stop.margin_before < 0.0)) return false;
+  stop.setting = programmed(in);
+  stop.setting.feed_factor = 0.0;
+  stop.limited_by = kNoStableSettingKnown;
+  stop.confidence_percent = 50;
+  held_back_ = false;
+  start(in, stop, out);
+  publish(in, out);
+  return true;
+}
+
+// A stop is asked for until the tool is out of the part, or the controller does not take it.
+void Compensator::follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept {
+  const bool over = has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns);
+  if (over) attempts_.clear();
+  if (over) {
+    release(in, "stopped, and the cut is over", out);
+  } else if (attempts_.refused(CorrectionKind::stop_request)) {
+    release(in, "the controller does not stop", out);
+    said_none_ = true;
+  }
+}
+
+// As found when the correction began; before, as it is now. A programmed speed that the spindle cannot turn is none.
+CutSetting Compensator::programmed(const CompensatorInputs& in) const noexcept {
+  if (correcting()) return programmed_;
+  const SpindleLimits& spindle = settings_.limits.spindle;
+  CutSetting program;
+  const bool programmed = in.nominal_speed >= spindle.min_speed && in.nominal_speed <= spindle.max_speed;
+  program.speed = programmed ? in.nominal_speed : std::clamp(in.monitor->speed, spindle.min_speed, spindle.max_speed);
+  program.feed_direction = in.feed_direction;
+  return program;
+}
+
+Prediction Compensator::prediction(const CompensatorInputs& in) const noexcept {
+  return {in.lobes, in.lobes_ahead, in.axial_depth, frequency_scale_};
+}
+
+// For the depth that the cut is on its way to: a pocket that is left again by the deeper cut is none.
+Prediction Compensator::coming_prediction(const CompensatorInputs& in) const noexcept {
+  Prediction coming = prediction(in);
+  coming.axial_depth = in.coming_depth;
+  return coming;
+}
+
+CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
+  const CutSetting program = programmed(in);
+  CutPlace place;
+  if (in.robot != nullptr) {
+    place.joints = in.robot->joint_position;
+    place.tcp = in.robot->tcp_position;
+  }
+  place.programmed_speed = program.speed;
+  place.feed_direction = program.feed_direction;
+  place.axial_depth = in.axial_depth;
+  return place;
+}
+
+ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  ChatterSituation s;
+  s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
+  s.chatter_frequency_hz = frequency_of_chatter(in);
+  s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
+  s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, kPatience_ns);
+  s.teeth = settings_.teeth;
+  s.programmed = programmed(in);
+  const bool followed = correcting() && settings_.mode == RuntimeMode::active;
+  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
+  s.present.speed = heard.speed;
+  s.prediction = coming_prediction(in);
+  // The lobes lie where they are heard, as long as the program's own speed is the one that is heard.
+  if (!correcting() && !s.structural && in.lobes != nullptr)
+    s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);
+  s.remembered = memory_.recall(place(in));
+  return s;
+}
+
+// NaN where the tool is thrown about without a line.
+double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !heard.single_line) return kNaN;
+  return in.lobes == nullptr ? heard.chatter_frequency_hz
+                             : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
+}
+
+// Loud, and for so long as it takes to be believed: at once where chatter is predicted. Elsewhere a line of unknown
+// kind may be forced, and a burst be that of an entry.
+bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
+  const Prediction coming = coming_prediction(in);
+  if (margin_at(coming, heard.speed) < 0.0) return true;
+  const bool predicted_stable = safe_margin_at(coming, heard.speed) > 0.0;
+  const std::int64_t lasts_ns = predicted_stable                     ? kUnpredictedWaits_ns
+                                : heard.kind == ChatterKind::unknown ? kUnknownKindWaits_ns
+                                                                     : 0;
+  return has_run(chatter_since_ns_, in.now_ns, lasts_ns);
+}
+
+// What sounds like chatter of the structure may be the sweep of a changing speed: it has to be at a mode of the
+// structure, where those are known, and to last, where none is predicted.
+bool Compensator::structure_chatters(const CompensatorInputs& in) const noexcept {
+  const MonitorView& heard = *in.monitor;
+  if (!heard.structural) return false;
+  if (in.lobes != nullptr && in.lobes->mode_count > 0 && !is_at_a_mode(*in.lobes, heard.structural_frequency_hz))
+    return false;
+  return !(safe_margin_at(coming_prediction(in), heard.speed) > 0.0) ||
+         has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
+}
+
+// The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
+// chattered, only less depth counts.
+bool Compensator::reason_is_gone(const CompensatorInputs& in) const noexcept {
+  if (return_failed_ || settings_.mode != RuntimeMode::active) return false;
+  const Prediction now = prediction(in);
+  if (!(safe_margin_at(now, programmed_.speed) > kSafeToReturn)) return false;
+  if (!(chatter_margin_ < 0.0)) return in.axial_depth < kMuchShallower * chatter_depth_;
+  return margin_at(now, programmed_.speed) > chatter_margin_ + kBetterThanThen;
+}
+
+void Compensator::remember(const CompensatorInputs& in) noexcept {
+  if (remembered_ || settings_.mode != RuntimeMode::active) return;
+  remembered_ = true;
+  CutPlace there = place(in);
+  there.axial_depth = chatter_depth_;
+  memory_.keep({there, candidate_.kind, candidate_.setting});
+}
+
+std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {
+  if (settings_.mode == RuntimeMode::shadow) return kShadowAct_ns;
+  double s = motion_.arrives_at() - motion_time(in.now_ns) + kLasts_s +
+             kLastsTimeConstants * settings_.limits.spindle_time_constant_s;
+  const double most = tool_chatters(in) ? kMostSettling_s : kMostSettlingOfStructure_s;
+  s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, most);
+  if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
+  return to_ns(s);
+}
+
+void Compensator::begin_motion(const CompensatorInputs& in) noexcept {
+  programmed_ = programmed(in);
+  began_ns_ = in.now_ns;
+  CutSetting present = programmed_;
+  present.speed = in.monitor->speed > 0.0 ? in.monitor->speed : programmed_.speed;
+  motion_.begin(present);
+}
+
+void Compensator::start_return(const CompensatorInputs& in) noexcept {
+  if (!motion_.move_to(programmed_, motion_time(in.now_ns), settings_.limits, kReturnPace)) return;
+  phase_ = Phase::returning;
+  next_publish_ns_ = in.now_ns;
 }
 
 }  // namespace stillcut

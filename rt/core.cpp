@@ -17,6 +17,9 @@ constexpr std::int64_t kControllerSilent_ns = 500'000'000;
 // A diagram computed for a posture older than this is not of the present posture (as long as states arrive).
 constexpr std::int64_t kLobesTooOld_ns = 1'500'000'000;
 
+constexpr double kDepthForgets_s = 0.1;  // of the rate at which the depth grows
+constexpr double kDepthAhead_s = 1.0;
+
 // CAN_ERR_* of linux/can/error.h
 constexpr std::uint32_t kControllerTrouble = 0x04, kBusOff = 0x40, kRestarted = 0x100;
 constexpr std::uint8_t kPassive = 0x30;  // receive or transmit
@@ -95,6 +98,14 @@ void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
 }
 
 void Core::add_robot_state(const RobotState& state) noexcept {
+  const double step_s = static_cast<double>(state.stamp_ns - robot_.stamp_ns) * 1e-9;
+  if (robot_heard_ && step_s > 0.0 && step_s < kDepthForgets_s) {
+    const double rate = (state.axial_depth - robot_.axial_depth) / step_s;
+    const double share = step_s / kDepthForgets_s;
+    depth_rate_ = std::isfinite(rate) ? std::lerp(depth_rate_, rate, share) : 0.0;
+  } else {
+    depth_rate_ = 0.0;
+  }
   robot_ = state;
   robot_heard_ = true;
 }
@@ -110,7 +121,7 @@ void Core::adopt_lobes(std::int64_t now_ns) noexcept {
   std::size_t due = 0;
   while (due < next_lobes_count_ && waiting_lobes(due).usable_from_ns <= now_ns) ++due;
   if (due == 0) return;
-  lobes_ = waiting_lobes(due - 1);
+  for (std::size_t i = 0; i < due; ++i) (waiting_lobes(i).ahead ? lobes_ahead_ : lobes_) = waiting_lobes(i);
   first_lobes_ = (first_lobes_ + due) % next_lobes_.size();
   next_lobes_count_ -= due;
   update_prior();
@@ -133,8 +144,19 @@ const LobeDiagram* Core::lobes() const noexcept {
   return of_another_posture ? nullptr : &lobes_;
 }
 
+const LobeDiagram* Core::lobes_ahead() const noexcept {
+  return lobes_ahead_.valid && now_ns_ < lobes_ahead_.usable_until_ns ? &lobes_ahead_ : nullptr;
+}
+
 double Core::axial_depth() const noexcept {
   return robot_heard_ && std::isfinite(robot_.axial_depth) ? robot_.axial_depth : settings_.axial_depth;
+}
+
+// The depth for which a correction is chosen: while the tool goes deeper that of a second later, up to the nominal one.
+double Core::coming_depth() const noexcept {
+  const double now = axial_depth();
+  const double deepest = std::max(now, settings_.axial_depth);
+  return depth_rate_ > 0.0 && deepest > now ? std::min(deepest, now + depth_rate_ * kDepthAhead_s) : now;
 }
 
 double Core::predicted_margin() const noexcept {
@@ -149,7 +171,10 @@ void Core::decide(std::int64_t stamp_ns) noexcept {
   in.now_ns = now_ns;
   in.monitor = &view();
   in.lobes = lobes();
+  in.lobes_ahead = lobes_ahead();
+  in.robot = robot_heard_ ? &robot_ : nullptr;
   in.axial_depth = axial_depth();
+  in.coming_depth = coming_depth();
   in.feed_direction = robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
   in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
   in.controller_alive = robot_heard_ && now_ns - robot_.stamp_ns < kControllerSilent_ns;

@@ -60,6 +60,8 @@ class Core {
   [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
   // The diagram in use; nullptr when there is none that fits the posture.
   [[nodiscard]] const LobeDiagram* lobes() const noexcept;
+  // That along the announced path; nullptr when none is announced, or it has been travelled.
+  [[nodiscard]] const LobeDiagram* lobes_ahead() const noexcept;
 
  private:
   void step_to(std::int64_t now_ns) noexcept;
@@ -72,6 +74,7 @@ class Core {
   void put_status(std::int64_t now_ns) noexcept;
   void update_prior() noexcept;
   [[nodiscard]] double axial_depth() const noexcept;
+  [[nodiscard]] double coming_depth() const noexcept;
   [[nodiscard]] double predicted_margin() const noexcept;
 
   CoreSettings settings_;
@@ -80,11 +83,13 @@ class Core {
   OutputQueue outputs_;
   CoreCounters counters_;
   LobeDiagram lobes_;                         // the newest that may be used
+  LobeDiagram lobes_ahead_;                   // along the announced path
   std::array<LobeDiagram, 16> next_lobes_{};  // those whose time has yet to come, round and round from first_lobes_
   std::size_t first_lobes_ = 0, next_lobes_count_ = 0;
   double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown
   RobotState robot_;
-  bool started_ = false;  // by the first frame
+  double depth_rate_ = 0.0;  // m/s, as the robot's states tell
+  bool started_ = false;     // by the first frame
   bool robot_heard_ = false;
   bool out_of_order_told_ = false;
   std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well

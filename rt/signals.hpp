@@ -27,6 +27,24 @@ struct RobotState {
   std::int32_t block = 0;
 };
 
+// robot_path_t as received (drivers/lcm): where the program takes the tool next.
+struct PathPoint {
+  double after = 0.0;                      // s from the path's stamp on
+  std::array<double, 6> joint_position{};  // rad
+  std::array<double, 3> tcp_position{};    // m, workpiece frame
+  double feed_direction = 0.0;             // rad
+  double radial_depth = 0.0;               // m; NaN: unknown
+  Milling milling = Milling::unknown;
+};
+
+struct RobotPath {
+  static constexpr std::size_t kMaxPoints = 8;
+
+  std::int64_t stamp_ns = 0;
+  std::size_t count = 0;
+  std::array<PathPoint, kMaxPoints> points{};  // in time
+};
+
 struct CorrectionAck {
   std::int64_t stamp_ns = 0;
   std::int64_t sequence = 0;
@@ -96,7 +114,7 @@ struct Output {
   explicit Output(const Status& s) : type{Type::status}, status{s} {}
 };
 
-static_assert(std::is_trivially_copyable_v<RobotState>);
+static_assert(std::is_trivially_copyable_v<RobotState> && std::is_trivially_copyable_v<RobotPath>);
 static_assert(std::is_trivially_copyable_v<Output>);
 
 }  // namespace stillcut

@@ -52,8 +52,10 @@ class RobotMessages {
         core.add_robot_state(*state);
         if (!pace_.due(*state)) continue;
         if (const auto diagram = predictor_.at(*state)) core.add_lobes(*diagram);
-      } else {
-        core.add_ack(std::get<CorrectionAck>(message));
+      } else if (const auto* ack = std::get_if<CorrectionAck>(&message)) {
+        core.add_ack(*ack);
+      } else if (const auto diagram = predictor_.along(std::get<RobotPath>(message))) {
+        core.add_lobes(*diagram);
       }
     }
   }

@@ -24,6 +24,7 @@ std::int64_t realtime_ns() noexcept {
 bool LiveLoop::tick() noexcept {
   const std::int64_t before_ns = realtime_ns();
   if (channels_.lobes.update()) pipeline_.core().add_lobes(channels_.lobes.value());
+  if (channels_.ahead.update()) pipeline_.core().add_lobes(channels_.ahead.value());
   bool drained = false;
   for (int batch = 0; batch < kBatchesATick && !drained; ++batch) {
     const std::size_t count = bus_.receive(batch_);

@@ -1,7 +1,7 @@
 // The daemon's real-time side: what one tick of the loop does, and the wait-free channels to the ordinary threads.
 //
 //   from                to                  through
-//   model thread        loop                lobes        snapshot, newest diagram
+//   model thread        loop                lobes, ahead snapshots, newest diagram of each
 //   subscriber thread   loop                messages     ring, robot states and acknowledgements
 //   loop                publisher thread    outputs      ring, events, corrections, status
 //   loop                recorder thread     recorded     ring, every frame that went into the core
@@ -23,7 +23,7 @@ namespace stillcut {
 std::int64_t realtime_ns() noexcept;  // this host's CLOCK_REALTIME
 
 struct LoopChannels {
-  Snapshot<LobeDiagram> lobes;
+  Snapshot<LobeDiagram> lobes, ahead;  // of the present posture, along the announced path
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
   Ring<CanFrame> recorded{32768};          // ten seconds of a triaxial 25.6 kHz sensor

@@ -81,6 +81,7 @@ struct LiveRun::Parts {
   PublisherThread publisher;
   std::optional<RecorderThread> recorder;
   Snapshot<RobotState> newest_state;  // now and then a state is for the model thread, every message for the loop
+  Snapshot<RobotPath> newest_path;    // for the model thread alone
   PredictionPace pace;                // the subscriber thread's
   std::jthread model;
   std::optional<Subscriber> subscriber;
@@ -107,6 +108,7 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
     if (pace.due(state)) newest_state.publish(state);
   };
   handlers.on_ack = [this](const CorrectionAck& ack) { (void)channels->messages.push(ack); };
+  handlers.on_path = [this](const RobotPath& path) { newest_path.publish(path); };
   handlers.on_bad = [](std::string_view channel, const char* why) { spdlog::warn("{}: {}", channel, why); };
   subscriber.emplace(lcm, realtime_ns, handlers);
 
@@ -127,6 +129,9 @@ void LiveRun::Parts::run_model(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (newest_state.update()) {
       if (const auto diagram = predictor.at(newest_state.value())) channels->lobes.publish(*diagram);
+    }
+    if (newest_path.update()) {
+      if (const auto diagram = predictor.along(newest_path.value())) channels->ahead.publish(*diagram);
     }
     std::this_thread::sleep_for(kPollModel);
   }

@@ -1,11 +1,28 @@
 #include "tools/pipeline.hpp"
 
+#include <algorithm>
+
 namespace stillcut {
 namespace {
 
 constexpr double kLowestSampleRate_hz = 500.0;  // of the monitor
 
 }  // namespace
+
+CompensationLimits compensation_limits(const Cell& cell) {
+  const CompensationSettings& asked = cell.compensation;
+  CompensationLimits limits = asked.limits;
+  limits.spindle = require(cell, cell.spindle, "spindle");
+  limits.feed_per_tooth = require(cell, cell.cut, "cut").feed_per_tooth;
+  const double radius = 0.5 * require(cell, cell.tool, "tool").diameter;
+  limits.spindle.min_speed = std::max(limits.spindle.min_speed, asked.min_cutting_speed / radius);
+  limits.spindle.max_speed = std::min(limits.spindle.max_speed, asked.max_cutting_speed / radius);
+  if (!(limits.spindle.max_speed > limits.spindle.min_speed))
+    throw InputError(cell.file.string(), 0,
+                     "compensation: the window of cutting speed leaves no speed of the spindle's range; check "
+                     "min_cutting_speed_m_per_min, max_cutting_speed_m_per_min and the tool's diameter");
+  return limits;
+}
 
 CoreSettings core_settings(const Cell& cell) {
   const Tool& tool = require(cell, cell.tool, "tool");
@@ -34,7 +51,7 @@ CoreSettings core_settings(const Cell& cell) {
   settings.monitor.release_ratio = cell.detection.release_ratio.value_or(settings.monitor.release_ratio);
   settings.compensator.mode = cell.mode;
   settings.compensator.teeth = tool.teeth;
-  settings.compensator.spindle = spindle;
+  settings.compensator.limits = compensation_limits(cell);
   settings.axial_depth = cut.axial_depth;
   settings.feed_direction = cut.feed_direction;
   settings.nominal_speed = cut.spindle_speed;

@@ -13,6 +13,10 @@ namespace stillcut {
 // What monitor and compensator need of a cell. Throws InputError for a section that is missing.
 CoreSettings core_settings(const Cell& cell);
 
+// What corrections may ask of the cell: its [compensation], with the spindle's range narrowed to the tool's window of
+// cutting speed. Throws InputError where nothing is left of it.
+CompensationLimits compensation_limits(const Cell& cell);
+
 class Pipeline {
  public:
   // Reads the cell's DBC. Throws InputError.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/files/cell.hpp"
+#include "models/confidence.hpp"
 #include "models/dynamics_map.hpp"
 #include "models/interpolation.hpp"
 #include "models/lobe_diagram.hpp"
@@ -48,10 +49,18 @@ class Predictor {
   // same frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
   [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
 
+  // For an announced path: at every speed the least limit of its points; an invalid diagram for a path without points.
+  // Nothing where a point cannot be predicted.
+  [[nodiscard]] std::optional<LobeDiagram> along(const RobotPath& path) const;
+
  private:
   [[nodiscard]] std::string slow_fit_warning() const;  // empty: none
   [[nodiscard]] PredictedPosture predict(const Posture& posture) const;
   [[nodiscard]] LobeDiagram compute(const PredictedPosture& predicted, const Cut& cut) const;
+  void add_directions(const std::vector<Mode>& modes, Cut cut, double speed, LobeDiagram& diagram) const;
+  void add_scatter(const PredictedPosture& predicted, LobeDiagram& diagram) const;
+  [[nodiscard]] std::optional<LobeDiagram> at_place(const Posture& posture, double feed_direction, Milling milling,
+                                                    double radial_depth, double directions_at_speed) const;
 
   std::string cell_file_;
   Tool tool_;
@@ -61,6 +70,8 @@ class Predictor {
   DynamicsMap map_;
   Interpolation interpolation_;
   Posture posture_;
+  bool directions_asked_ = false;           // the path leaves the feed direction free
+  ModalScatter map_scatter_;                // between postures
   std::optional<RobotState> computed_for_;  // the state that last_ belongs to
   LobeDiagram last_;
 };

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "drivers/files/input_error.hpp"
+#include "dsp/numbers.hpp"
 #include "models/interpolation_kind.hpp"
 #include "models/machining.hpp"
+#include "rt/compensation_limits.hpp"
 #include "rt/signals.hpp"
 
 namespace stillcut {
@@ -51,6 +53,12 @@ struct DetectionSettings {
   std::optional<double> release_ratio;  // of the limit: below it chatter has ended
 };
 
+// What corrections may ask. Spindle and feed per tooth are those of their own sections.
+struct CompensationSettings {
+  CompensationLimits limits;
+  double min_cutting_speed = 0.0, max_cutting_speed = kInfinity;  // m/s, the tool's window
+};
+
 struct Cell {
   std::filesystem::path file;  // as given on the command line
   // Sections that are absent stay empty: a command asks only for what it needs, through the require_* functions.
@@ -64,6 +72,7 @@ struct Cell {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   RuntimeMode mode = RuntimeMode::shadow;
   DetectionSettings detection;
+  CompensationSettings compensation;
 };
 
 // The files named in a cell that must be there. A command that needs fewer says so: `lobes` needs no CAN, and `replay`

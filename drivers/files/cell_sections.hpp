@@ -23,4 +23,7 @@ std::string read_lcm_url(TomlSection section, const std::string& fallback);
 RuntimeMode read_runtime_mode(TomlSection section);
 DetectionSettings read_detection(TomlSection section);
 
+// Corrections (cell_compensation.cpp).
+CompensationSettings read_compensation(TomlSection section);
+
 }  // namespace stillcut

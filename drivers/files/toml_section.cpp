@@ -73,6 +73,13 @@ std::string TomlSection::text(std::string_view key, const std::optional<std::str
   return node->as_string()->get();
 }
 
+bool TomlSection::truth(std::string_view key, std::optional<bool> fallback) {
+  const toml::node* node = find(key, !fallback);
+  if (node == nullptr) return fallback.value_or(false);
+  if (!node->is_boolean()) fail_type(key, *node, "true or false");
+  return node->as_boolean()->get();
+}
+
 std::string TomlSection::chosen_name(std::string_view key, const std::vector<std::string>& names, bool required) {
   const toml::node* node = find(key, required);
   if (node == nullptr) return "";

@@ -40,6 +40,7 @@ class TomlSection {
   double number(std::string_view key, Bounds bounds, std::optional<double> fallback = {});
   int whole_number(std::string_view key, int min, int max);
   std::string text(std::string_view key, const std::optional<std::string>& fallback = {});
+  bool truth(std::string_view key, std::optional<bool> fallback = {});
   template <class T>
   T choice(std::string_view key, std::initializer_list<std::pair<std::string_view, T>> choices,
            std::optional<T> fallback = {});

@@ -38,6 +38,10 @@ std::optional<RobotMessage> LcmLogReader::next() {
       const auto state = decode_robot_state(event->data, event->stamp_ns);
       if (state.ok()) return state.value;
       ++bad_;
+    } else if (event->channel == kRobotPathChannel) {
+      const auto path = decode_robot_path(event->data, event->stamp_ns);
+      if (path.ok()) return path.value;
+      ++bad_;
     } else if (event->channel == kRobotAckChannel) {
       const auto ack = decode_correction_ack(event->data, event->stamp_ns);
       if (ack.ok()) return ack.value;
@@ -81,7 +85,7 @@ std::optional<LcmLogReader::LogEvent> LcmLogReader::read_event_here() {
   MessageBytes channel(static_cast<std::size_t>(channel_length));
   if (!read_at(position_ + kHeaderBytes, channel)) return {};
   event.channel.assign(channel.begin(), channel.end());
-  if (event.channel == kRobotStateChannel || event.channel == kRobotAckChannel) {
+  if (event.channel == kRobotStateChannel || event.channel == kRobotAckChannel || event.channel == kRobotPathChannel) {
     event.data.resize(static_cast<std::size_t>(data_length));
     if (!read_at(end - data_length, event.data)) return {};
   }

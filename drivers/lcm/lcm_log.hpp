@@ -15,14 +15,14 @@
 
 namespace stillcut {
 
-using RobotMessage = std::variant<RobotState, CorrectionAck>;  // stamp_ns: the time of the log's event
+using RobotMessage = std::variant<RobotState, CorrectionAck, RobotPath>;  // stamp_ns: the time of the log's event
 
 class LcmLogReader {
  public:
   // Throws InputError when the file is missing, a folder, unreadable, or holds no whole event at all.
   explicit LcmLogReader(const std::filesystem::path& file);
 
-  // The next message on ROBOT_STATE or ROBOT_ACK, in the file's order; nothing at its end.
+  // The next message on ROBOT_STATE, ROBOT_ACK or ROBOT_PATH, in the file's order; nothing at its end.
   std::optional<RobotMessage> next();
 
   [[nodiscard]] std::int64_t events() const noexcept { return events_; }  // whole ones, of every channel

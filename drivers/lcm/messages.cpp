@@ -5,6 +5,7 @@
 #include <stillcut/correction_ack_t.hpp>
 #include <stillcut/correction_t.hpp>
 #include <stillcut/event_t.hpp>
+#include <stillcut/robot_path_t.hpp>
 #include <stillcut/robot_state_t.hpp>
 #include <stillcut/status_t.hpp>
 #include <string>
@@ -93,6 +94,32 @@ const char* reason_to_refuse(const robot_state_t& m) {
   return nullptr;
 }
 
+const char* reason_to_refuse(const robot_path_t& m) {
+  constexpr double kLongest_s = 3600.0;
+  double before = 0.0;
+  for (std::size_t i = 0; i < m.after_s.size(); ++i) {
+    if (!within(m.after_s[i], before, kLongest_s)) return "after_s does not rise from 0 to 3600";
+    before = m.after_s[i];
+    if (!all_within(m.joint_position_rad[i], -kMaxJointRad, kMaxJointRad)) return "joint_position_rad is no angle";
+    if (!all_within(m.tcp_position_m[i], -kMaxPositionM, kMaxPositionM))
+      return "tcp_position_m is no place within 1 km";
+    if (!within(m.feed_direction_rad[i], -kMaxAngleRad, kMaxAngleRad)) return "feed_direction_rad is no angle";
+    if (!unknown_or_within(m.radial_depth_m[i], 0, kMaxDepthM)) return "radial_depth_m is neither NaN nor from 0 to 1";
+    if (m.milling[i] < 0 || m.milling[i] > 3) return "milling is not 0, 1, 2 or 3";
+  }
+  return nullptr;
+}
+
+// The generated code makes as many points as `count` asks for before it looks at the bytes.
+bool count_fits(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kFingerprint = 8, kTime = 8, kCount = 4;
+  constexpr std::size_t kPoint = 8 * (1 + 6 + 3 + 1 + 1) + 1;
+  if (bytes.size() < kFingerprint + kTime + kCount) return false;
+  std::size_t count = 0;
+  for (const std::uint8_t byte : bytes.subspan(kFingerprint + kTime, kCount)) count = count << 8 | byte;
+  return count <= RobotPath::kMaxPoints && bytes.size() == kFingerprint + kTime + kCount + count * kPoint;
+}
+
 const char* reason_to_refuse(const correction_ack_t& m) {
   if (m.sequence < 0) return "sequence is negative";
   if (m.accepted != 0 && m.accepted != 1) return "accepted is neither 0 nor 1";
@@ -116,6 +143,21 @@ MessageBytes encode(const RobotState& state) {
   m.radial_depth_m = state.radial_depth;
   m.milling = static_cast<std::int8_t>(state.milling);
   m.block = state.block;
+  return to_bytes(m);
+}
+
+MessageBytes encode(const RobotPath& path) {
+  robot_path_t m{};
+  m.utime = to_us(path.stamp_ns);
+  m.count = static_cast<std::int32_t>(path.count);
+  for (const PathPoint& point : std::span{path.points}.first(path.count)) {
+    m.after_s.push_back(point.after);
+    m.joint_position_rad.emplace_back(point.joint_position.begin(), point.joint_position.end());
+    m.tcp_position_m.emplace_back(point.tcp_position.begin(), point.tcp_position.end());
+    m.feed_direction_rad.push_back(point.feed_direction);
+    m.radial_depth_m.push_back(point.radial_depth);
+    m.milling.push_back(static_cast<std::int8_t>(point.milling));
+  }
   return to_bytes(m);
 }
 
@@ -206,6 +248,25 @@ Received<RobotState> decode_robot_state(std::span<const std::uint8_t> bytes, std
   state.milling = static_cast<Milling>(m.milling);
   state.block = m.block;
   return {state};
+}
+
+Received<RobotPath> decode_robot_path(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns) {
+  robot_path_t m{};
+  if (!count_fits(bytes) || !from_bytes(bytes, m)) return refused<RobotPath>(kWrongType);
+  if (const char* why_not = reason_to_refuse(m)) return refused<RobotPath>(why_not);
+  RobotPath path;
+  path.stamp_ns = stamp_ns;
+  path.count = m.after_s.size();
+  for (std::size_t i = 0; i < path.count; ++i) {
+    PathPoint& point = path.points[i];
+    point.after = m.after_s[i];
+    std::copy_n(m.joint_position_rad[i].begin(), point.joint_position.size(), point.joint_position.begin());
+    std::copy_n(m.tcp_position_m[i].begin(), point.tcp_position.size(), point.tcp_position.begin());
+    point.feed_direction = m.feed_direction_rad[i];
+    point.radial_depth = m.radial_depth_m[i];
+    point.milling = static_cast<Milling>(m.milling[i]);
+  }
+  return {path};
 }
 
 Received<CorrectionAck> decode_correction_ack(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns) {

@@ -16,8 +16,8 @@
 namespace stillcut {
 
 inline constexpr const char *kRobotStateChannel = "ROBOT_STATE", *kRobotAckChannel = "ROBOT_ACK",
-                            *kCorrectionChannel = "STILLCUT_CORRECTION", *kEventChannel = "STILLCUT_EVENT",
-                            *kStatusChannel = "STILLCUT_STATUS";
+                            *kRobotPathChannel = "ROBOT_PATH", *kCorrectionChannel = "STILLCUT_CORRECTION",
+                            *kEventChannel = "STILLCUT_EVENT", *kStatusChannel = "STILLCUT_STATUS";
 
 // The last microsecond, counted from 1970, that fits in nanoseconds.
 inline constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / 1000;
@@ -25,6 +25,7 @@ inline constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max()
 using MessageBytes = std::vector<std::uint8_t>;
 
 MessageBytes encode(const RobotState& state);
+MessageBytes encode(const RobotPath& path);
 MessageBytes encode(const CorrectionAck& ack, std::string_view reason = {});
 MessageBytes encode(const Correction& correction);
 MessageBytes encode(const Event& event);
@@ -42,6 +43,7 @@ struct Received {
 // From the robot. Refused: bytes of another type or length, numbers that are not finite or beyond any machine, a tool
 // orientation of no length, a milling kind out of range. Depths may be NaN: unknown. The orientation is normalised.
 Received<RobotState> decode_robot_state(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns);
+Received<RobotPath> decode_robot_path(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns);
 Received<CorrectionAck> decode_correction_ack(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns);
 
 // What the daemon publishes, for the plant and the tests; the stamp is the message's utime. Texts longer than a

@@ -16,6 +16,8 @@ bool Publisher::publish(const Output& output) {
 
 bool Publisher::publish(const RobotState& state) { return send(kRobotStateChannel, encode(state)); }
 
+bool Publisher::publish(const RobotPath& path) { return send(kRobotPathChannel, encode(path)); }
+
 bool Publisher::publish(const CorrectionAck& ack, std::string_view reason) {
   return send(kRobotAckChannel, encode(ack, reason));
 }

@@ -18,6 +18,7 @@ class Publisher {
   // One thread at a time. False, and counted, when the message could not be sent.
   bool publish(const Output& output);
   bool publish(const RobotState& state);  // the plant speaks for the robot
+  bool publish(const RobotPath& path);
   bool publish(const CorrectionAck& ack, std::string_view reason = {});
 
   // Any thread.

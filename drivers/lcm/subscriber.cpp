@@ -17,7 +17,8 @@ std::span<const std::uint8_t> bytes_of(const lcm_recv_buf_t& buffer) {
 Subscriber::Subscriber(LcmConnection connection, Clock clock, RobotHandlers handlers)
     : connection_{std::move(connection)}, clock_{std::move(clock)}, handlers_{std::move(handlers)} {
   subscriptions_ = {lcm_subscribe(connection_.get(), kRobotStateChannel, &Subscriber::receive_state, this),
-                    lcm_subscribe(connection_.get(), kRobotAckChannel, &Subscriber::receive_ack, this)};
+                    lcm_subscribe(connection_.get(), kRobotAckChannel, &Subscriber::receive_ack, this),
+                    lcm_subscribe(connection_.get(), kRobotPathChannel, &Subscriber::receive_path, this)};
   for (lcm_subscription_t* subscription : subscriptions_) {
     lcm_subscription_set_queue_capacity(subscription, kQueuedMessages);
   }
@@ -46,6 +47,11 @@ void Subscriber::receive_state(const lcm_recv_buf_t* buffer, const char* channel
 void Subscriber::receive_ack(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept {
   auto& self = *static_cast<Subscriber*>(subscriber);
   self.hand_over(channel, decode_correction_ack(bytes_of(*buffer), self.stamp()), self.handlers_.on_ack);
+}
+
+void Subscriber::receive_path(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept {
+  auto& self = *static_cast<Subscriber*>(subscriber);
+  self.hand_over(channel, decode_robot_path(bytes_of(*buffer), self.stamp()), self.handlers_.on_path);
 }
 
 template <class T>

@@ -1,5 +1,5 @@
-// Receives the robot's messages on a thread of its own: ROBOT_STATE and ROBOT_ACK, decoded, checked and stamped with
-// the time they came. What cannot be trusted is counted and reported, not passed on.
+// Receives the robot's messages on a thread of its own: ROBOT_STATE, ROBOT_ACK and ROBOT_PATH, decoded, checked and
+// stamped with the time they came. What cannot be trusted is counted and reported, not passed on.
 #pragma once
 
 #include <atomic>
@@ -18,6 +18,7 @@ namespace stillcut {
 struct RobotHandlers {
   std::function<void(const RobotState&)> on_state;
   std::function<void(const CorrectionAck&)> on_ack;
+  std::function<void(const RobotPath&)> on_path;
   std::function<void(std::string_view channel, const char* why_not)> on_bad;
 };
 
@@ -44,6 +45,7 @@ class Subscriber {
   void run(const std::stop_token& stop);
   static void receive_state(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept;
   static void receive_ack(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept;
+  static void receive_path(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) noexcept;
   template <class T>
   void hand_over(const char* channel, const Received<T>& message, const std::function<void(const T&)>& handler);
   [[nodiscard]] std::int64_t stamp() const;

@@ -12,7 +12,9 @@ namespace stillcut {
 // A compensator with its inputs, stepped every 2 ms as the monitor's hops would; keeps all that it says.
 class Bench {
  public:
-  explicit Bench(RuntimeMode mode) : compensator_{{mode, 2, spindle_6000_to_12000(), 0.05}} {
+  explicit Bench(RuntimeMode mode)
+      : Bench{{mode, 2, {.spindle = spindle_6000_to_12000(), .spindle_time_constant_s = 0.05}}} {}
+  explicit Bench(const CompensatorSettings& settings) : compensator_{settings} {
     in.axial_depth = 1e-3;
     in.nominal_speed = rpm_to_rad_s(9000);
   }
@@ -22,6 +24,7 @@ class Bench {
     view.stamp_ns = now_ns;
     in.now_ns = now_ns;
     in.monitor = &view;
+    in.coming_depth = in.axial_depth;
     compensator_.step(in, queue_);
     for (const Output& output : queue_.items()) {
       if (output.type == Output::Type::correction) corrections.push_back(output.correction);

@@ -31,7 +31,7 @@ inline SyntheticCut chattering_cut() {
 inline CoreSettings settings_of(const SyntheticCut& cut, RuntimeMode mode = RuntimeMode::shadow) {
   CoreSettings settings;
   settings.monitor = monitor_settings(cut);
-  settings.compensator = {mode, cut.teeth, spindle_6000_to_12000(), 0.05};
+  settings.compensator = {mode, cut.teeth, {.spindle = spindle_6000_to_12000(), .spindle_time_constant_s = 0.05}};
   settings.axial_depth = 1e-3;
   settings.nominal_speed = rpm_to_rad_s(9000);
   return settings;

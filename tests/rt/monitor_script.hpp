@@ -47,7 +47,7 @@ inline LobeDiagram diagram_of(const std::vector<double>& limits_mm, const Spindl
   diagram.point_count = static_cast<int>(limits_mm.size());
   const double spacing = (spindle.max_speed - spindle.min_speed) / (diagram.point_count - 1);
   for (std::size_t i = 0; i < limits_mm.size(); ++i) {
-    diagram.points[i] = {spindle.min_speed + spacing * static_cast<double>(i), limits_mm[i] * 1e-3, 700.0};
+    diagram.points[i] = {spindle.min_speed + spacing * static_cast<double>(i), limits_mm[i] * 1e-3, 738.0};
   }
   return diagram;
 }

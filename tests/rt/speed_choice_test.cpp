@@ -4,212 +4,284 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <random>
 #include <vector>
 
 #include "dsp/numbers.hpp"
-#include "models/lobes.hpp"
+#include "tests/rt/monitor_script.hpp"
+#include "tests/rt/speed_cases.hpp"
 
 namespace stillcut {
 namespace {
 
-// A diagram of the spindle's range with random limits around the depth of 1 mm: stable and unstable stretches of random
-// width, now and then stable or unstable at every depth.
-LobeDiagram random_diagram(const SpindleLimits& limits, std::mt19937_64& random) {
-  std::uniform_real_distribution<double> depth(0.2e-3, 2e-3), chance(0.0, 1.0);
-  LobeDiagram diagram;
-  diagram.valid = true;
-  diagram.point_count = 101;
-  double held = depth(random);
-  for (int i = 0; i < diagram.point_count; ++i) {
-    if (chance(random) < 0.15) held = depth(random);
-    const double special = chance(random);
-    diagram.points[i] = {limits.min_speed + (limits.max_speed - limits.min_speed) * i / (diagram.point_count - 1),
-                         special < 0.02   ? std::numeric_limits<double>::infinity()
-                         : special < 0.04 ? kNaN
-                                          : held,
-                         0.0};
-  }
-  return diagram;
-}
-
-struct Case {
-  SpeedQuestion question;
-  LobeDiagram diagram;
-  std::vector<double> tried;
-};
-
-class RandomCases : public ::testing::Test {
+class RandomSpeeds : public ::testing::Test {
  protected:
-  Case next() {
-    std::uniform_real_distribution<double> chance(0.0, 1.0);
-    Case c;
-    SpeedQuestion& q = c.question;
-    q.limits = {rpm_to_rad_s(1000 + 9000 * chance(random_)), 0.0, rpm_to_rad_s(3000), rpm_to_rad_s(30000)};
-    q.limits.max_speed = q.limits.min_speed * (1.0 + 2.0 * chance(random_));
-    q.chatter_frequency_hz = std::pow(10.0, 1.0 + 2.7 * chance(random_));  // 10 Hz to 5 kHz
-    q.teeth = 1 + static_cast<int>(6 * chance(random_));
-    q.speed = q.limits.min_speed + (q.limits.max_speed - q.limits.min_speed) * chance(random_);
-    q.axial_depth = chance(random_) < 0.1 ? kNaN : 1e-3;
-    c.diagram = random_diagram(q.limits, random_);
-    const int tried = static_cast<int>(4 * chance(random_));
-    for (int i = 0; i < tried; ++i) {  // likely ones: they are n_k themselves
-      const int k = 1 + static_cast<int>(20 * chance(random_));
-      c.tried.push_back(kTwoPi * q.chatter_frequency_hz / (q.teeth * k));
-    }
-    return c;
-  }
-  static void connect(Case& c, bool with_lobes) {
-    c.question.lobes = with_lobes ? &c.diagram : nullptr;
-    c.question.tried = c.tried;
-  }
+  SpeedCase next() { return random_speed_case(cases_); }
 
-  std::mt19937_64 random_{20250612};
+  ChoiceCases cases_{20250612};
 };
 
-// What may be chosen, by the rules of the header and in its plainest words: the oracle.
-struct Candidate {
-  int k = 0;
-  double speed = 0.0, margin = 0.0;
-};
-
-std::vector<Candidate> allowed(const SpeedQuestion& q) {
-  const auto margin_of = [&](double speed) { return q.lobes ? margin_at(*q.lobes, speed, q.axial_depth) : kNaN; };
-  std::vector<Candidate> list;
-  for (int k = 1; k < 5000; ++k) {
-    const double speed = rpm_to_rad_s(60.0 * q.chatter_frequency_hz / (q.teeth * k));
-    if (speed > q.limits.max_speed) continue;
-    if (speed < q.limits.min_speed) break;
-    if (std::abs(speed - q.speed) < 0.005 * q.speed) continue;
-    if (std::any_of(q.tried.begin(), q.tried.end(), [&](double t) { return std::abs(t - speed) < 0.01 * speed; })) {
-      continue;
-    }
-    double margin = margin_of(speed);
-    for (const double beside : {0.99, 1.01}) {
-      margin = std::min(margin, margin_of(std::clamp(speed * beside, q.limits.min_speed, q.limits.max_speed)));
-    }
-    if (margin <= margin_of(q.speed)) continue;
-    list.push_back({k, speed, margin});
-  }
-  return list;
-}
-
-TEST_F(RandomCases, TargetIsInStepWithTheChatterInsideTheLimitsAndNotPredictedWorse) {
-  int found = 0;
-  for (int i = 0; i < 20000; ++i) {
-    Case c = next();
-    connect(c, i % 4 != 0);
-    const SpeedQuestion& q = c.question;
-    const SpeedChoice choice = choose_speed(q);
-    if (!choice.found) continue;
+TEST_F(RandomSpeeds, TargetMayBeAskedForAndIsNotPredictedWorse) {
+  int found = 0, limited = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    if (!choice.found()) continue;
     ++found;
-    const double n_rpm = 60.0 * q.chatter_frequency_hz / (q.teeth * choice.lobe);
-    EXPECT_NEAR(rad_s_to_rpm(choice.target), n_rpm, 1e-9 * n_rpm);
-    EXPECT_GE(choice.target, q.limits.min_speed);
-    EXPECT_LE(choice.target, q.limits.max_speed);
-    EXPECT_GE(choice.lobe, 1);
+    const Prediction p = c.kept.view();
+    EXPECT_TRUE(spindle_may_stay(c.limits, choice.target));
+    EXPECT_TRUE(tooth_may_take(c.limits, choice.target, c.programmed_speed));
+    EXPECT_GE(std::abs(choice.target - c.speed), 0.005 * c.speed);
     for (const double t : c.tried) EXPECT_GE(std::abs(t - choice.target), 0.01 * choice.target);
-    if (q.lobes != nullptr && !std::isnan(choice.margin_before)) {
-      EXPECT_GT(choice.margin_after, choice.margin_before);
-      EXPECT_GT(margin_at(*q.lobes, choice.target, q.axial_depth), margin_at(*q.lobes, q.speed, q.axial_depth));
-    }
-    EXPECT_EQ(choice.limited_by, 0);
+    const double before = margin_at(p, c.speed), after = margin_at(p, choice.target);
+    EXPECT_FALSE(after <= before) << before << " to " << after;
+    EXPECT_TRUE(choice.margin_before == before || (std::isnan(choice.margin_before) && std::isnan(before)));
+    EXPECT_TRUE(choice.margin_after == after || (std::isnan(choice.margin_after) && std::isnan(after)));
+    const double override_there = choice.target / c.programmed_speed;
+    const bool held_up = override_there < c.limits.min_feed_override || override_there > c.limits.max_feed_override;
+    EXPECT_EQ(choice.limited_by, held_up ? kLimitedByFeedRange : 0);
+    limited += held_up ? 1 : 0;
+    EXPECT_NEAR(choice.move_s, fastest_move_s(c, choice.target), 1e-9 + 1e-9 * choice.move_s);
     EXPECT_GT(choice.confidence_percent, 0);
     EXPECT_LE(choice.confidence_percent, 100);
   }
-  EXPECT_GT(found, 5000);
+  EXPECT_GT(found, 2000);
+  EXPECT_GT(limited, 20);
 }
 
-TEST_F(RandomCases, NearestStableIsPreferredThenTheMostStable) {
-  int stable_chosen = 0, best_of_bad = 0;
-  for (int i = 0; i < 20000; ++i) {
-    Case c = next();
-    c.question.axial_depth = 1e-3;
-    connect(c, true);
-    const std::vector<Candidate> candidates = allowed(c.question);
-    const SpeedChoice choice = choose_speed(c.question);
-    ASSERT_EQ(choice.found, !candidates.empty());
-    if (candidates.empty()) continue;
-    const auto distance = [&](const Candidate& a) { return std::abs(a.speed - c.question.speed); };
-    std::vector<Candidate> stable;
-    std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(stable),
-                 [](const Candidate& a) { return a.margin > 0.0; });
-    const Candidate wanted =
-        stable.empty() ? *std::max_element(candidates.begin(), candidates.end(),
-                                           [](const auto& a, const auto& b) { return a.margin < b.margin; })
-                       : *std::min_element(stable.begin(), stable.end(),
-                                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-    EXPECT_EQ(choice.margin_after > 0.0, !stable.empty());
-    if (stable.empty()) {
-      EXPECT_EQ(choice.margin_after, wanted.margin);  // of equal ones any
-      ++best_of_bad;
-    } else {
-      EXPECT_EQ(choice.lobe, wanted.k);
-      ++stable_chosen;
+TEST_F(RandomSpeeds, GroundsMeanWhatTheySay) {
+  int seen[5] = {};
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    ++seen[static_cast<int>(choice.grounds)];
+    const double safe = safe_margin_at(c.kept.view(), choice.target);
+    const double n_k = choice.lobe > 0 ? c.in_step(choice.lobe) : kNaN;
+    switch (choice.grounds) {
+      case SpeedGrounds::agreed:
+        ASSERT_GE(choice.lobe, 1);
+        EXPECT_GT(safe, 0.0);
+        EXPECT_LE(std::abs(choice.target - n_k), std::min(0.03, 0.2 / choice.lobe) * n_k * (1.0 + 1e-9));
+        break;
+      case SpeedGrounds::predicted:
+        EXPECT_EQ(choice.lobe, 0);
+        EXPECT_GT(safe, 0.0);
+        EXPECT_TRUE(heard_is_known(c));
+        break;
+      case SpeedGrounds::in_step:
+        ASSERT_GE(choice.lobe, 1);
+        EXPECT_NEAR(choice.target, n_k, 1e-12 * n_k);
+        EXPECT_TRUE(std::isnan(safe) || !heard_is_known(c));
+        break;
+      case SpeedGrounds::improved:
+        EXPECT_FALSE(choice.margin_after <= choice.margin_before);
+        EXPECT_EQ(choice.confidence_percent, 30);
+        break;
+      case SpeedGrounds::none:
+        break;
     }
   }
-  EXPECT_GT(stable_chosen, 1000);
-  EXPECT_GT(best_of_bad, 100);
+  for (const int count : seen) EXPECT_GT(count, 25);
 }
 
-TEST_F(RandomCases, WithoutADiagramTheNearestIsChosen) {
-  int found = 0;
-  for (int i = 0; i < 5000; ++i) {
-    Case c = next();
-    connect(c, false);
-    const std::vector<Candidate> candidates = allowed(c.question);
-    const SpeedChoice choice = choose_speed(c.question);
-    ASSERT_EQ(choice.found, !candidates.empty());
-    if (candidates.empty()) continue;
-    ++found;
-    for (const Candidate& other : candidates) {
-      EXPECT_LE(std::abs(choice.target - c.question.speed), std::abs(other.speed - c.question.speed) * (1.0 + 1e-12));
+TEST_F(RandomSpeeds, ASafeSpeedInStepIsTakenAndNothingBesideIt) {
+  int safe_ones = 0, beside = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    std::vector<double> safe = lobes_in_reach(c);
+    std::erase_if(safe, [&](double speed) { return !is_safe(c, speed); });
+    if (!safe.empty()) {
+      ++safe_ones;
+      ASSERT_EQ(choice.grounds, SpeedGrounds::agreed);
     }
+    if (choice.grounds != SpeedGrounds::agreed) continue;
+    const double n_k = c.in_step(choice.lobe);
+    const bool is_n_k = std::abs(choice.target - n_k) < 1e-12 * n_k;
+    beside += is_n_k ? 0 : 1;
+    if (!is_n_k) {
+      EXPECT_FALSE(may_choose(c, n_k, 0.01) && is_safe(c, n_k));
+    }
+  }
+  EXPECT_GT(safe_ones, 250);
+  EXPECT_GT(beside, 25);
+}
+
+TEST_F(RandomSpeeds, NothingWithBetterGroundsIsLeft) {
+  int predicted = 0, in_step = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    const std::vector<double> points = points_in_reach(c), lobes = lobes_in_reach(c);
+    if (heard_is_known(c) && std::any_of(points.begin(), points.end(), [&](double p) { return is_safe(c, p); })) {
+      ++predicted;
+      EXPECT_GE(choice.grounds, SpeedGrounds::predicted);
+    }
+    const auto nothing_against = [&](double n) {
+      return std::isnan(safe_margin_at(c.kept.view(), n)) || !heard_is_known(c);
+    };
+    if (std::any_of(lobes.begin(), lobes.end(), nothing_against)) {
+      ++in_step;
+      EXPECT_GE(choice.grounds, SpeedGrounds::in_step);
+    }
+  }
+  EXPECT_GT(predicted, 250);
+  EXPECT_GT(in_step, 250);
+}
+
+TEST_F(RandomSpeeds, AmongEqualGroundsTheSoonestReachedWinsAMarginBeingWorthHalfASecond) {
+  const auto worth = [](const SpeedCase& c, double speed) {
+    const double safe = safe_margin_at(c.kept.view(), speed);
+    const double counted = std::isnan(safe) ? 0.0 : std::clamp(safe, 0.0, 0.5);
+    return counted - fastest_move_s(c, speed);  // 0.5 of margin: 0.5 s
+  };
+  int agreed = 0, predicted = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    if (choice.grounds != SpeedGrounds::agreed && choice.grounds != SpeedGrounds::predicted) continue;
+    const bool of_lobe = choice.grounds == SpeedGrounds::agreed;
+    ++(of_lobe ? agreed : predicted);
+    for (const double other : of_lobe ? lobes_in_reach(c) : points_in_reach(c)) {
+      if (!is_safe(c, other)) continue;
+      EXPECT_GE(worth(c, choice.target), worth(c, other) - 1e-9);
+    }
+  }
+  EXPECT_GT(agreed, 250);
+  EXPECT_GT(predicted, 100);
+}
+
+TEST_F(RandomSpeeds, WithoutADiagramTheSoonestReachedInStepIsChosen) {
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SpeedCase c = next();
+    c.kept = {};
+    const std::vector<double> lobes = lobes_in_reach(c);
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    ASSERT_EQ(choice.found(), !lobes.empty());
+    if (lobes.empty()) continue;
+    ++found;
+    EXPECT_EQ(choice.grounds, SpeedGrounds::in_step);
+    for (const double other : lobes) EXPECT_LE(choice.move_s, fastest_move_s(c, other) * (1.0 + 1e-9));
     EXPECT_TRUE(std::isnan(choice.margin_before));
     EXPECT_TRUE(std::isnan(choice.margin_after));
+    EXPECT_TRUE(std::isnan(choice.safe_margin));
   }
-  EXPECT_GT(found, 1000);
+  EXPECT_GT(found, 250);
 }
 
-TEST_F(RandomCases, WhereNothingMayBeChosenItSaysSo) {
+TEST_F(RandomSpeeds, WithoutALineOnlyTheLobesAnswer) {
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SpeedCase c = next();
+    c.chatter_frequency_hz = kNaN;
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    if (!c.kept.here) {
+      EXPECT_FALSE(choice.found());
+    }
+    if (!choice.found()) continue;
+    ++found;
+    EXPECT_EQ(choice.lobe, 0);
+    EXPECT_NE(choice.grounds, SpeedGrounds::in_step);
+    EXPECT_NE(choice.grounds, SpeedGrounds::agreed);
+    const std::vector<double> points = points_in_reach(c);
+    EXPECT_NE(std::find(points.begin(), points.end(), choice.target), points.end());
+  }
+  EXPECT_GT(found, 250);
+}
+
+TEST_F(RandomSpeeds, WhereNothingMayBeChosenItSaysSo) {
   int none = 0;
-  for (int i = 0; i < 20000; ++i) {
-    Case c = next();
-    connect(c, i % 4 != 0);
-    if (!allowed(c.question).empty()) continue;
-    const SpeedChoice choice = choose_speed(c.question);
-    ASSERT_FALSE(choice.found);
+  for (int i = 0; i < 4000; ++i) {
+    const SpeedCase c = next();
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    // Without a prediction that calls the target safe or better only a speed in step may be asked for.
+    const double before = margin_at(c.kept.view(), c.speed);
+    const auto gains = [&](double speed) {
+      const double safe = safe_margin_at(c.kept.view(), speed);
+      return safe > 0.0 || safe - before > 0.1;
+    };
+    const std::vector<double> points = points_in_reach(c), lobes = lobes_in_reach(c);
+    const bool any_lobe = std::any_of(lobes.begin(), lobes.end(), [&](double n) {
+      return gains(n) || std::isnan(safe_margin_at(c.kept.view(), n)) || !heard_is_known(c);
+    });
+    const bool any = any_lobe || std::any_of(points.begin(), points.end(), gains);
+    if (any) {
+      EXPECT_TRUE(choice.found());
+      EXPECT_EQ(choice.limited_by & kNoStableSettingKnown, 0);
+    }
+    if (choice.found()) continue;
+    ++none;
+    EXPECT_FALSE(any);
     EXPECT_EQ(choice.limited_by, kNoStableSettingKnown | kLimitedBySpeedRange);
     EXPECT_EQ(choice.confidence_percent, 0);
-    ++none;
   }
-  EXPECT_GT(none, 500);
+  EXPECT_GT(none, 200);
+}
+
+// The lobes lie at speeds higher by the scale: as if the diagram had been computed so.
+TEST_F(RandomSpeeds, AFrequencyScaleMovesTheChosenPocketByItself) {
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SpeedCase c = next();
+    c.chatter_frequency_hz = kNaN;
+    if (!c.kept.here) c.kept.here = cases_.diagram(c.limits.spindle);
+    c.kept.ahead.reset();
+    c.kept.here->speed_scatter = 0.0;
+    c.kept.frequency_scale = cases_.between(0.94, 1.06);
+    SpeedCase moved = c;
+    for (LobePoint& point : moved.kept.here->points) point.speed *= c.kept.frequency_scale;
+    moved.kept.frequency_scale = 1.0;
+    const SpeedChoice choice = choose_speed(c.question(), c.limits);
+    const SpeedChoice wanted = choose_speed(moved.question(), c.limits);
+    ASSERT_EQ(choice.grounds, wanted.grounds);
+    if (!choice.found()) continue;
+    ++found;
+    EXPECT_NEAR(choice.target, wanted.target, 1e-9 * wanted.target);
+  }
+  EXPECT_GT(found, 250);
 }
 
 TEST(SpeedChoice, QuestionsWithoutAnAnswerAreToldNotComputed) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  const SpeedQuestion good{750.0,   2, rpm_to_rad_s(9000), 1e-3, {rpm_to_rad_s(6000), rpm_to_rad_s(12000), 300, 3000},
-                           nullptr, {}};
-  ASSERT_TRUE(choose_speed(good).found);
+  CompensationLimits limits;
+  limits.spindle = {rpm_to_rad_s(6000), rpm_to_rad_s(12000), 300, 3000};
+  const double speed = rpm_to_rad_s(9000);
+  const SpeedQuestion good{750.0, 2, speed, speed, {}, {}};
+  ASSERT_TRUE(choose_speed(good, limits).found());
   std::vector<SpeedQuestion> bad(11, good);
   bad[0].chatter_frequency_hz = kNaN;
-  bad[1].chatter_frequency_hz = kInf;
+  bad[1].chatter_frequency_hz = kInfinity;
   bad[2].chatter_frequency_hz = 0.0;
   bad[3].chatter_frequency_hz = -750.0;
-  bad[4].teeth = 0;
-  bad[5].speed = kNaN;
-  bad[6].speed = 0.0;
-  bad[7].limits = {};
-  bad[8].limits.max_speed = kNaN;
-  bad[9].teeth = -2;
-  bad[10].chatter_frequency_hz = 1e300;
-  for (std::size_t i = 0; i < bad.size(); ++i) {
-    const SpeedChoice choice = choose_speed(bad[i]);
-    EXPECT_FALSE(choice.found) << i;
+  bad[4].chatter_frequency_hz = 1e300;
+  bad[5].teeth = 0;
+  bad[6].teeth = -2;
+  bad[7].speed = kNaN;
+  bad[8].speed = 0.0;
+  bad[9].programmed_speed = kNaN;
+  bad[10].programmed_speed = 0.0;
+  std::vector<CompensationLimits> impossible(4, limits);
+  impossible[0].spindle = {};
+  impossible[1].spindle.max_speed = kNaN;
+  impossible[2].spindle.acceleration = 0.0;
+  impossible[3].spindle.jerk = kNaN;
+  for (std::size_t i = 0; i < bad.size() + impossible.size(); ++i) {
+    const SpeedChoice choice =
+        i < bad.size() ? choose_speed(bad[i], limits) : choose_speed(good, impossible[i - bad.size()]);
+    EXPECT_FALSE(choice.found()) << i;
     EXPECT_NE(choice.limited_by & kNoStableSettingKnown, 0) << i;
   }
+}
+
+// 738 Hz, two teeth: 7380 and 11070 rpm are in step, and 7380 is nearer to 9000.
+TEST(SpeedChoice, TheExampleOfTheDocumentation) {
+  CompensationLimits limits;
+  limits.spindle = spindle_6000_to_12000();
+  const SpeedChoice choice = choose_speed({738.0, 2, rpm_to_rad_s(9000), rpm_to_rad_s(9000), {}, {}}, limits);
+  EXPECT_EQ(choice.lobe, 3);
+  EXPECT_NEAR(rad_s_to_rpm(choice.target), 7380.0, 1e-6);
+  const double tried[] = {choice.target};
+  const SpeedChoice second = choose_speed({738.0, 2, rpm_to_rad_s(9000), rpm_to_rad_s(9000), {}, tried}, limits);
+  EXPECT_NEAR(rad_s_to_rpm(second.target), 11070.0, 1e-6);
 }
 
 }  // namespace

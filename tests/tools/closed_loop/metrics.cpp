@@ -23,12 +23,11 @@ constexpr double kBeforeExit = 0.4;  // s: the tool is still whole in the part
 
 double seconds(std::int64_t stamp_ns) { return static_cast<double>(stamp_ns - kCampaignOrigin) * 1e-9; }
 
+// Feed and direction move to their target in small steps, which the messages do not name: each counts as one setting.
 Asked asked_by(const Correction& c) {
   Asked asked{seconds(c.stamp_ns), c.kind, 0.0};
   if (c.kind == CorrectionKind::spindle_speed) asked.value = rpm_to_rad_s(c.spindle_speed_target_rpm);
   if (c.kind == CorrectionKind::speed_variation) asked.value = c.speed_variation_ratio;
-  if (c.kind == CorrectionKind::feed_direction) asked.value = c.feed_direction;
-  if (c.kind == CorrectionKind::feed_override) asked.value = c.feed_override;
   return asked;
 }
 

@@ -1,0 +1,74 @@
+// What to try next against this chatter, from the best founded to the last resort: a constant speed, a varying speed,
+// another feed direction, less feed, a stop. Each is judged by its predicted margin and by what was tried; nothing
+// predicted worse than the present setting is ever proposed. Pure function, fit for the loop.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "rt/compensation_limits.hpp"
+#include "rt/correction_memory.hpp"
+#include "rt/cut_setting.hpp"
+#include "rt/predicted_margin.hpp"
+#include "rt/signals.hpp"
+
+namespace stillcut {
+
+struct Candidate {
+  CorrectionKind kind = CorrectionKind::release;  // release: nothing is left to try
+  CutSetting setting;
+  int lobe = 0;                // k of n = 60 f_c / (N k); 0: from the lobes, or no speed
+  bool remembered = false;     // it worked here before
+  double settle_s = 0.0;       // expected decay once the setting is reached
+  double margin_before = 0.0;  // a_lim/a - 1; NaN unknown
+  double margin_after = 0.0;
+  std::int32_t limited_by = 0;
+  int confidence_percent = 0;
+};
+
+// Settings that were given time and did not help, with the depth at which: shallower they may yet.
+class Attempts {
+ public:
+  void add(const Candidate& candidate, double axial_depth) noexcept;
+  void refuse(CorrectionKind kind) noexcept { refused_ |= 1U << static_cast<unsigned>(kind); }
+  void clear() noexcept { *this = {}; }
+
+  [[nodiscard]] bool refused(CorrectionKind kind) const noexcept {
+    return (refused_ >> static_cast<unsigned>(kind) & 1U) != 0;
+  }
+  [[nodiscard]] int count(CorrectionKind kind, double axial_depth) const noexcept;
+
+  static constexpr std::size_t kMost = 16;
+  struct Speeds {
+    std::array<double, kMost> speed{};
+    std::size_t count = 0;
+  };
+  [[nodiscard]] Speeds speeds(double axial_depth) const noexcept;
+
+ private:
+  struct Attempt {
+    CorrectionKind kind = CorrectionKind::release;
+    double speed = 0.0, axial_depth = 0.0;
+  };
+  std::array<Attempt, kMost> attempts_{};
+  std::size_t count_ = 0;
+  unsigned refused_ = 0;
+};
+
+struct ChatterSituation {
+  bool structural = false;            // of the robot's structure alone: the tool's recipe n_k does not apply
+  double chatter_frequency_hz = 0.0;  // NaN: no single line
+  double vibration_hz = 0.0;          // the same, or of the structure; NaN: not known
+  bool patience_is_out = false;       // it has chattered on for so long that only the last resort is left
+  int teeth = 0;
+  CutSetting present;  // as it is now: measured speed, the feed and direction that are set
+  CutSetting programmed;
+  Prediction prediction;
+  const Remembered* remembered = nullptr;  // that worked here before
+};
+
+[[nodiscard]] Candidate next_candidate(const ChatterSituation& situation, const Attempts& attempts,
+                                       const CompensationLimits& limits) noexcept;
+
+}  // namespace stillcut

@@ -1,0 +1,64 @@
+#include "rt/direction_choice.hpp"
+
+#include <cmath>
+
+#include "dsp/numbers.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kSameSpeedAsked = 0.02;  // relative
+constexpr double kStepDegrees = 5.0;
+constexpr double kLeastTurn = 0.05;       // rad; less is no other direction
+constexpr double kLeastGainOfTurn = 0.1;  // what is only better must be better by this
+
+}  // namespace
+
+double depth_limit_towards(const LobeDiagram& diagram, double direction) noexcept {
+  const int count = diagram.direction_count;
+  if (!diagram.valid || count < 1 || count > LobeDiagram::kMaxDirections || !std::isfinite(direction)) return kNaN;
+  const double turned = direction - diagram.directions[0].direction;
+  const double place = (turned / kHalfTurn - std::floor(turned / kHalfTurn)) * count;
+  const auto limit = [&](int i) {
+    const double depth = diagram.directions[static_cast<std::size_t>(i % count)].depth_limit;
+    return std::isnan(depth) ? 0.0 : depth;
+  };
+  const int below = static_cast<int>(place);
+  constexpr double kOnPoint = 1e-6;
+  if (place - below < kOnPoint) return limit(below);
+  return std::min(limit(below), limit(below + 1));
+}
+
+DirectionChoice choose_direction(const DirectionQuestion& q, const CompensationLimits& limits) noexcept {
+  DirectionChoice best;
+  best.margin_before = best.margin_after = kNaN;
+  if (q.lobes == nullptr || !(limits.free_turn > 0.0) || !(q.axial_depth > 0.0)) return best;
+  const LobeDiagram& lobes = *q.lobes;
+  if (!(std::abs(lobes.direction_speed - q.speed) < kSameSpeedAsked * q.speed)) return best;
+  const auto margin_towards = [&](double direction) {
+    return depth_limit_towards(lobes, direction) / q.axial_depth - 1.0;
+  };
+  best.margin_before = margin_towards(q.direction);
+  if (std::isnan(best.margin_before)) return best;
+  const int steps = static_cast<int>(limits.free_turn / deg_to_rad(kStepDegrees));
+  double nearest = kInfinity;
+  for (int i = -steps; i <= steps; ++i) {
+    const double direction = q.programmed_direction + i * deg_to_rad(kStepDegrees);
+    const double turn = std::abs(direction - q.direction);
+    const double margin = margin_towards(direction);
+    const bool stable = (1.0 + margin) * (1.0 - lobes.depth_scatter) > 1.0;
+    if (turn < kLeastTurn || !(margin > best.margin_before + kLeastGainOfTurn)) continue;
+    const bool improves = !best.found || (stable && !best.stable) ||
+                          (stable == best.stable && (stable ? turn < nearest : margin > best.margin_after));
+    if (!improves) continue;
+    best.found = true;
+    best.stable = stable;
+    best.direction = direction;
+    best.margin_after = margin;
+    nearest = turn;
+  }
+  return best;
+}
+
+}  // namespace stillcut

@@ -1,0 +1,107 @@
+#include "rt/predicted_margin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dsp/numbers.hpp"
+#include "models/machining.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: no pocket is entered more exactly
+constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
+constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
+constexpr double kScaleMax = 0.06;
+constexpr double kAboutAMode = 0.25;
+constexpr double kSidebandFound = 0.03;  // nearer than this to the prediction: its sideband
+
+double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
+  return diagram == nullptr ? kNaN : margin_at(*diagram, speed / p.frequency_scale, p.axial_depth);
+}
+
+double worse(double a, double b) noexcept { return std::isnan(a) ? b : std::isnan(b) ? a : std::min(a, b); }
+
+// The least margin of one diagram from low to high: at both ends, and at every point between. (Between two points the
+// smaller one holds, so nothing is less.)
+double least_margin(const Prediction& p, const LobeDiagram* diagram, double low, double high) noexcept {
+  if (diagram == nullptr || !diagram->valid || diagram->point_count < 2) return kNaN;
+  const auto last = static_cast<std::size_t>(std::min(diagram->point_count, LobeDiagram::kMaxPoints)) - 1;
+  const double first_speed = diagram->points[0].speed * p.frequency_scale;
+  const double last_speed = diagram->points[last].speed * p.frequency_scale;
+  const double from = std::max(low, first_speed), to = std::min(high, last_speed);
+  if (!(from <= to && last_speed > first_speed)) return kNaN;
+  const double at_ends = worse(scaled_margin(p, diagram, from), scaled_margin(p, diagram, to));
+  const double places = static_cast<double>(last) / (last_speed - first_speed);
+  const auto first_inside = static_cast<std::size_t>(std::ceil((from - first_speed) * places));
+  const auto last_inside = std::min(static_cast<std::size_t>((to - first_speed) * places), last);
+  double least = kInfinity;
+  for (std::size_t i = first_inside; i <= last_inside; ++i) {
+    const double limit = diagram->points[i].depth_limit;
+    least = std::min(least, std::isnan(limit) ? 0.0 : limit);
+  }
+  return std::min(at_ends, least / p.axial_depth - 1.0);
+}
+
+// Chatter frequency predicted at a speed; NaN: none, or between two points that differ.
+double predicted_frequency(const LobeDiagram& diagram, double speed) noexcept {
+  if (!diagram.valid || diagram.point_count < 2) return kNaN;
+  const auto last = static_cast<std::size_t>(diagram.point_count) - 1;
+  const double first_speed = diagram.points[0].speed, last_speed = diagram.points[last].speed;
+  const double place = (speed - first_speed) / (last_speed - first_speed) * static_cast<double>(last);
+  if (!(place >= 0.0 && place <= static_cast<double>(last))) return kNaN;
+  const auto below = static_cast<std::size_t>(place);
+  const double a = diagram.points[below].chatter_frequency_hz;
+  const double b = diagram.points[std::min(below + 1, last)].chatter_frequency_hz;
+  return std::abs(a - b) <= kSameFrequency * a ? 0.5 * (a + b) : kNaN;
+}
+
+}  // namespace
+
+double margin_at(const Prediction& p, double speed) noexcept {
+  return worse(scaled_margin(p, p.here, speed), scaled_margin(p, p.ahead, speed));
+}
+
+double safe_margin_at(const Prediction& p, double speed) noexcept {
+  double least = kNaN;
+  for (const LobeDiagram* diagram : {p.here, p.ahead}) {
+    if (diagram == nullptr) continue;
+    // A scale learnt from what is heard says where the lobes lie better than the map does.
+    const double scatter = p.frequency_scale == 1.0 ? diagram->speed_scatter : 0.0;
+    const double reach = kSpeedKnown + scatter;
+    const double nominal = least_margin(p, diagram, speed * (1.0 - reach), speed * (1.0 + reach));
+    least = worse(least, (1.0 + nominal) * (1.0 - diagram->depth_scatter) - 1.0);
+  }
+  return least;
+}
+
+double heard_frequency_scale(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {
+  const double scale = heard_hz / predicted_frequency(diagram, speed);
+  const double off = std::abs(scale - 1.0);
+  return off > kSameFrequency && off < kScaleMax ? scale : 1.0;
+}
+
+double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept {
+  const double predicted = predicted_frequency(diagram, speed);
+  const double tooth_passing_hz = teeth * speed / kTwoPi;
+  if (explains(diagram, speed, heard_hz) || !(tooth_passing_hz > 0.0) || std::isnan(predicted)) return heard_hz;
+  const double base = heard_hz - std::round((heard_hz - predicted) / tooth_passing_hz) * tooth_passing_hz;
+  return std::abs(base - predicted) < kSidebandFound * predicted ? base : heard_hz;
+}
+
+bool is_at_a_mode(const LobeDiagram& diagram, double heard_hz) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
+  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count, [&](const ModeSummary& mode) {
+    return std::abs(heard_hz - mode.frequency_hz) < kAboutAMode * mode.frequency_hz;
+  });
+}
+
+bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {
+  const auto near = [&](double hz) { return std::abs(heard_hz - hz) < kOtherFrequency * hz; };
+  if (near(predicted_frequency(diagram, speed))) return true;
+  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
+  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count,
+                     [&](const ModeSummary& mode) { return near(mode.frequency_hz); });
+}
+
+}  // namespace stillcut
