@@ -110,6 +110,7 @@ RandomCell draw_cell(Draw& draw, CellClass kind) {
   cell.controller.lag = 1e-3 * draw.from(10.0, 20.0);
   cell.controller.spindle_time_constant = draw.from(0.2, 0.5);
   cell.seed = static_cast<std::uint64_t>(draw.whole(1, 1'000'000));
+  if (cell.seed % 2 == 0) cell.free_turn = deg_to_rad(15.0 + static_cast<double>(cell.seed % 46));
   return cell;
 }
 

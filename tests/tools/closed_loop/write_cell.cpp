@@ -64,7 +64,10 @@ std::string cell_text(const RandomCell& cell, const std::string& map) {
       << "\"\ninterpolation = \"modal\"\nposture = \"home\"\n\n"
          "[can]\nbus = \"local:campaign\"\ndbc = \"cell.dbc\"\n[[can.accelerometer]]\nsample_rate_hz = 25600\n"
          "x = \"Vibration.X{0..9}\"\ny = \"Vibration.Y{0..9}\"\nz = \"Vibration.Z{0..9}\"\n"
-         "counter = \"Vibration.Counter\"\nunit = \"m/s^2\"\n[can.spindle]\nspeed_rpm = \"Spindle.Speed\"\n";
+         "counter = \"Vibration.Counter\"\nunit = \"m/s^2\"\n[can.spindle]\nspeed_rpm = \"Spindle.Speed\"\n\n"
+         "[compensation]\nspindle_time_constant_s = "
+      << number(cell.controller.spindle_time_constant)
+      << "\nfree_feed_turn_deg = " << number(rad_to_deg(cell.free_turn)) << '\n';
   return out.str();
 }
 
