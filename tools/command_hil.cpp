@@ -13,6 +13,7 @@
 #include "drivers/lcm/monitor_listener.hpp"
 #include "tools/closed_loop.hpp"
 #include "tools/commands.hpp"
+#include "tools/compare_runs.hpp"
 #include "tools/event_csv.hpp"
 #include "tools/hil_score.hpp"
 #include "tools/live_loop.hpp"
@@ -31,7 +32,7 @@ constexpr std::chrono::milliseconds kLastWords{200};            // for what is s
 
 struct HilOptions {
   std::string cell, scenario, plot, events;
-  bool shadow = false, json = false, data_time = false, live = false;
+  bool shadow = false, json = false, data_time = false, live = false, compare = false;
 };
 
 struct HilRun {
@@ -46,10 +47,9 @@ nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json score_json(const HilScore& score, const HilRun& run) {
-  const VirtualMachine& machine = *run.machine;
+nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& machine,
+                                  const std::optional<TickTimes>& ticks, const std::optional<PlantReport>& plant) {
   const bool chatter = !score.spells.empty();
-  const std::optional<TickTimes>& ticks = run.ticks;
   using Json = nlohmann::ordered_json;
   return {{"detected", or_null(score.detected)},
           {"detection_ms", or_null(score.detection_ms)},
@@ -63,6 +63,7 @@ nlohmann::ordered_json score_json(const HilScore& score, const HilRun& run) {
           {"tick_p9999_us", ticks ? Json(ticks->p9999_us) : Json(nullptr)},
           {"tick_max_us", ticks ? Json(ticks->max_us) : Json(nullptr)},
           {"chatter_spells", score.spells.size()},
+          {"chatter_s", score.chatter_s},
           {"chatter_start_s", chatter ? Json(score.spells.front().start) : Json(nullptr)},
           {"chatter_frequency_hz", chatter ? Json(score.spells.front().frequency_hz) : Json(nullptr)},
           {"corrections_refused", machine.controller().refused()},
@@ -70,7 +71,7 @@ nlohmann::ordered_json score_json(const HilScore& score, const HilRun& run) {
           {"stopped", score.stopped},
           {"frames_sent", machine.frames_sent()},
           {"frames_lost", machine.frames_lost()},
-          {"behind_ms", run.plant ? Json(std::max(0.0, run.plant->behind_ms)) : Json(nullptr)}};
+          {"behind_ms", plant ? Json(std::max(0.0, plant->behind_ms)) : Json(nullptr)}};
 }
 
 void print_verdict(const Scenario& scenario, const HilScore& score, bool shadow) {
@@ -161,7 +162,7 @@ void report(const HilOptions& options, const Cell& cell, const Scenario& scenari
     for (const Event& event : run.heard.events) write_event(file.stream(), event, machine.origin_ns());
     file.finish();
   }
-  if (options.json) std::cout << score_json(score, run).dump() << '\n';
+  if (options.json) std::cout << score_json(score, machine, run.ticks, run.plant).dump() << '\n';
   if (options.json || options.events == "-") return;
   print_verdict(scenario, score, options.shadow);
   if (run.ticks)
@@ -169,7 +170,31 @@ void report(const HilOptions& options, const Cell& cell, const Scenario& scenari
                 run.ticks->p9999_us, run.ticks->max_us);
 }
 
+// The same cut as it chatters, corrected, and at a sound depth.
+void compare(const HilOptions& options, const Cell& cell, const Scenario& scenario) {
+  Progress progress{"running"};
+  const std::vector<ComparedRun> runs =
+      compare_runs(cell, scenario, kHilOrigin, [&](double share) { progress.update(share); });
+  progress.finish();
+  if (!options.plot.empty()) plot::write_figure(comparison_figure(scenario.title, cell, runs), options.plot);
+  if (!options.json) {
+    std::printf("%s\n", scenario.title.c_str());
+    print_comparison(runs);
+    return;
+  }
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const ComparedRun& run : runs) {
+    nlohmann::ordered_json one{{"name", run.name}};
+    one.update(score_json(run.score, *run.machine, {}, {}));
+    one["ra_at_end_um"] = std::isfinite(run.ra_at_end) ? nlohmann::ordered_json(1e6 * run.ra_at_end) : nullptr;
+    all.push_back(std::move(one));
+  }
+  std::cout << nlohmann::ordered_json{{"runs", all}}.dump() << '\n';
+}
+
 void hil(const HilOptions& options) {
+  if (options.compare && (options.live || options.shadow || !options.events.empty()))
+    throw CLI::ValidationError("--compare", "runs several times in data time; leave --live, --shadow, --events out");
   if (options.data_time && options.live)
     throw CLI::ValidationError("--live", "--data-time has neither bus nor LCM; leave one of the two out");
   check_outputs(options);
@@ -177,6 +202,7 @@ void hil(const HilOptions& options) {
   if (options.live) check_can_send(cell);
   cell.mode = options.shadow ? RuntimeMode::shadow : RuntimeMode::active;
   const Scenario scenario = read_scenario(options.scenario, cell);
+  if (options.compare) return compare(options, cell, scenario);
   Progress progress{"running"};
   const auto show = [&](double share) { progress.update(share); };
   const HilRun run =
@@ -223,10 +249,14 @@ void add_hil_command(CLI::App& app) {
   add_common_options(command, *options);
   command->add_flag("--shadow", options->shadow, "corrections are shown and not followed");
   command->add_flag("--data-time", options->data_time, "as fast as it goes, without clock and threads: repeatable");
+  command->add_flag("--compare", options->compare,
+                    "the cut not corrected, corrected, and at a depth that is sound as programmed (data time)");
   command->add_flag("--live", options->live,
                     "on the bus and the LCM network that the cell names (default: on private ones)");
   command->footer(
-      "Example:\n  stillcut hil examples/robot-cell/cell.toml --scenario examples/scenarios/depth-step.toml");
+      "Example:\n  stillcut hil examples/robot-cell/cell.toml --scenario examples/scenarios/depth-step.toml\n"
+      "  stillcut hil examples/demo-cell/cell.toml --scenario examples/scenarios/depth-step.toml --compare --plot "
+      "c.svg");
   command->callback([options] { hil(*options); });
 }
 

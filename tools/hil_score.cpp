@@ -52,6 +52,7 @@ bool ended_in_the_cut(const VirtualMachine& machine, const ChatterSpell& spell) 
 HilScore score_run(const VirtualMachine& machine, std::span<const Event> events) {
   HilScore score;
   score.spells = machine.truth().spells();
+  for (const ChatterSpell& spell : score.spells) score.chatter_s += spell.end - spell.start;
   const std::vector<double> onsets = onset_times(machine, events);
   for (const double onset : onsets) {
     const bool justified = std::any_of(score.spells.begin(), score.spells.end(),

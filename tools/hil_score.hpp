@@ -13,6 +13,7 @@ namespace stillcut {
 
 struct HilScore {
   std::vector<ChatterSpell> spells;      // the truth
+  double chatter_s = 0.0;                // all spells together
   std::optional<bool> detected;          // the first spell was heard; empty: there was none, as in the next three
   std::optional<double> detection_ms;    // from its start to the alarm; negative: the alarm came first
   std::optional<bool> suppressed;        // every spell ended while the tool cut on at the full depth

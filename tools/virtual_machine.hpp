@@ -59,13 +59,16 @@ class VirtualMachine {
   [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
   [[nodiscard]] double peak_displacement() const { return peak_displacement_; }  // m
   [[nodiscard]] double roughness() const { return wall_.roughness(); }           // m, of the wall; NaN: none
-  [[nodiscard]] double removed_volume() const { return removed_; }               // m^3
-  [[nodiscard]] double cutting_time() const { return cutting_time_; }            // s with the tool in the part
+  [[nodiscard]] const std::vector<ToothPass>& wall() const { return wall_.passes(); }
+  [[nodiscard]] double removed_volume() const { return removed_; }     // m^3
+  [[nodiscard]] double cutting_time() const { return cutting_time_; }  // s with the tool in the part
   [[nodiscard]] std::int64_t frames_sent() const { return frames_sent_; }
   [[nodiscard]] std::int64_t frames_lost() const { return frames_lost_; }
 
- private:
+  // What the program commands at a time.
   [[nodiscard]] RobotState program_at(double time) const;
+
+ private:
   [[nodiscard]] MillingConditions conditions_at(double time, const RobotState& program) const;
   [[nodiscard]] Posture posture_at(double time) const;
   [[nodiscard]] bool strike(double time);

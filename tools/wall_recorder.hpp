@@ -19,6 +19,7 @@ class WallRecorder {
   void add(const MillingState& state, const MillingConditions& conditions, double step);
 
   [[nodiscard]] double roughness() const;  // m; NaN: none was cut
+  [[nodiscard]] const std::vector<ToothPass>& passes() const { return wall_; }
 
  private:
   Tool tool_;

@@ -87,6 +87,7 @@ void read_accepts(TomlSection& section, ControllerScript& script) {
                                                         {"feed_override", Kind::feed_override},
                                                         {"stop", Kind::stop_request}};
   std::vector<std::string> known;
+  known.reserve(kinds.size());
   for (const auto& [name, kind] : kinds) known.push_back(name);
   const std::vector<std::string> given = section.names("accepts", known);
   if (!section.has("accepts")) return;

@@ -155,6 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
                               },
                               kPlant, 3, "cell.toml:37: can.bus: ", "log"},
                       Refusal{"live_without_time", scenario(""), with(kHil, {"--live"}), 2, "", "--live"},
+                      Refusal{"compared_in_shadow", scenario(""), with(kHil, {"--compare", "--shadow"}), 2, "",
+                              "--compare"},
                       Refusal{"two_for_stdout", scenario(""), with(kHil, {"--events", "-"}), 2, "", "--events"},
                       Refusal{"picture_kind", scenario(""), with(kHil, {"--plot", "p.txt"}), 3, "p.txt: ", ".svg"}),
     [](const auto& test) { return std::string(test.param.name); });

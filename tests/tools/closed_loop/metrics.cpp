@@ -15,6 +15,7 @@ constexpr double kFastWindow = 0.05, kSlowWindow = 0.25;  // s
 constexpr double kVisible = 3e-6, kRinging = 0.2;  // m, s after the beginning of a spell: what the truth calls chatter
 constexpr double kSameSetting = 0.005;             // relative
 constexpr double kDown = 0.1;                      // of the peak
+constexpr double kNoise = 2.0;                     // of what noise leaves in 95 % of the time
 constexpr double kTimeConstants = 4.0, kRoom = 0.1;  // of the spindle; s
 constexpr double kBack = 0.3, kDownFor = 0.2;        // of the peak, s: chatter that was down so long is back
 constexpr int kManyTimes = 2;
@@ -150,6 +151,14 @@ double move_duration(const RandomCell& cell, const VirtualMachine& machine, cons
   return plan.error == TrajectoryError::none ? plan.trajectory.duration() : 0.0;
 }
 
+// From when on the amplitude stays below a level, s after `from`.
+double down_after(const Amplitude& amplitude, double level, double from, double until) {
+  double last = from;
+  for (double time = from; time < until; time += 1e-3)
+    if (amplitude.at(time) > level) last = time;
+  return last + 2e-3 < until ? last - from : RunMetrics::kFar;
+}
+
 void measure_amplitude(const RandomCell& cell, const Amplitude& amplitude, RunMetrics& run) {
   const double end = cell.duration - kBeforeExit;
   run.settled = amplitude.share(0.95, 0.5 * (cell.deep_from + end), end);
@@ -159,11 +168,9 @@ void measure_amplitude(const RandomCell& cell, const Amplitude& amplitude, RunMe
   if (std::isnan(run.alarm)) return;
   run.at_alarm = amplitude.at(run.alarm);
   if (!run.asked.empty()) run.at_correction = amplitude.at(run.asked.front().time);
-  double last = run.alarm;
-  for (double time = run.alarm; time < end; time += 1e-3)
-    if (amplitude.at(time) > kDown * run.peak) last = time;
   run.times_back = times_back(amplitude, run.peak, run.alarm, end);
-  run.down_after = last + 2e-3 < end ? last - run.alarm : RunMetrics::kFar;
+  run.down_after = down_after(amplitude, kDown * run.peak, run.alarm, end);
+  run.down_to_noise_after = down_after(amplitude, std::fmax(kDown * run.peak, kNoise * run.in_pocket), run.alarm, end);
 }
 
 // What the noise of the force leaves of motion in the pocket: the same cut, its speed programmed, no monitor.
@@ -178,8 +185,9 @@ double floor_in_pocket(const RandomCell& cell, const Cell& milled, Scenario scen
 
 }  // namespace
 
-RunMetrics measure(const RandomCell& cell, const VirtualMachine& machine, const Heard& heard) {
+RunMetrics measure(const RandomCell& cell, const VirtualMachine& machine, const Heard& heard, double in_pocket) {
   RunMetrics run;
+  run.in_pocket = in_pocket;
   const Amplitude amplitude = amplitude_of(machine, !(cell.chatter_hz < kFastFrom_hz));
   const std::vector<ChatterSpell> spells = chatter_of(machine, amplitude);
   run.spells = static_cast<int>(spells.size());
@@ -219,9 +227,8 @@ RunMetrics run_cell(const RandomCell& random, const std::filesystem::path& folde
   const Scenario scenario = read_scenario(folder / "scenario.toml", milled);
   VirtualMachine machine{milled, scenario, kCampaignOrigin};
   const Heard heard = run_in_data_time(known, machine);
-  RunMetrics run = measure(random, machine, heard);
-  if (random.kind == CellClass::pocket) run.in_pocket = floor_in_pocket(random, milled, scenario);
-  return run;
+  return measure(random, machine, heard,
+                 random.kind == CellClass::pocket ? floor_in_pocket(random, milled, scenario) : kNaN);
 }
 
 }  // namespace stillcut::campaign

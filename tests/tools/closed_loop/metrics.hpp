@@ -39,12 +39,14 @@ struct RunMetrics {
   // chatter is slower than 80 Hz), of what of it is faster than 80 Hz where the chatter is.
   double peak = 0.0;                             // m
   double down_after = kNaN;                      // s after the alarm: from then on below a tenth of the peak
+  double down_to_noise_after = kNaN;             // s, the same, where twice `in_pocket` counts as down too
   double at_alarm = kNaN, at_correction = kNaN;  // m
   double sound = kNaN;                           // m, before the deep cut
   double settled = kNaN;                         // m, 95 % of the second half of the deep cut
   double in_pocket = kNaN;  // m, the same where the pocket's speed is programmed and nothing corrected
 
   [[nodiscard]] bool in_time() const { return down_after <= allowed; }
+  [[nodiscard]] bool in_time_but_for_noise() const { return down_to_noise_after <= allowed; }
   // A correction came before the chatter could be seen, and it stayed so.
   [[nodiscard]] bool forestalled() const { return !chattered && !std::isnan(alarm) && !asked.empty(); }
   // What the noise of the force leaves at the pocket's own speed is more than a tenth of the peak: it hides whether the
@@ -53,8 +55,8 @@ struct RunMetrics {
   static constexpr double kFar = 1e9;
 };
 
-// The cell's machine has run to its end and `heard` is what the monitor said.
-RunMetrics measure(const RandomCell& cell, const VirtualMachine& machine, const Heard& heard);
+// The cell's machine has run to its end and `heard` is what the monitor said; `in_pocket` as in RunMetrics.
+RunMetrics measure(const RandomCell& cell, const VirtualMachine& machine, const Heard& heard, double in_pocket = kNaN);
 
 // Writes the cell to `folder` and runs it there.
 RunMetrics run_cell(const RandomCell& cell, const std::filesystem::path& folder);

@@ -12,13 +12,14 @@ namespace stillcut::campaign {
 namespace {
 
 constexpr int kMostDraws = 2000;
-constexpr double kHighestMode_hz = 1280.0;                     // 20 samples a period at the sensors' 25.6 kHz
-constexpr double kDeepest = 6e-3;                              // m
-constexpr double kTruly = -0.1, kPocket = 0.15, kSound = 0.3;  // margins
-constexpr double kAround = 0.02;                               // of a speed: what a pocket must hold
-constexpr double kNearPocket = 0.05;                           // of 60 f_c / (N k): where it is
-constexpr double kMostOverLimit = 3.0;                         // deeper, and the sensor saturates
-constexpr double kAirFor = 0.4, kEntry = 0.05, kExit = 0.1;    // s
+constexpr double kHighestMode_hz = 1280.0;                            // 20 samples a period at the sensors' 25.6 kHz
+constexpr double kDeepest = 6e-3;                                     // m
+constexpr double kTruly = -0.1, kPocket = 0.15, kSound = 0.3;         // margins
+constexpr double kSlowest = rpm_to_rad_s(1200.0), kLeastRange = 1.4;  // of the spindle; highest over lowest speed
+constexpr double kAround = 0.02;                                      // of a speed: what a pocket must hold
+constexpr double kNearPocket = 0.05;                                  // of 60 f_c / (N k): where it is
+constexpr double kMostOverLimit = 2.5, kMostWithoutPocket = 2.0;  // times the limit: deeper, and the sensor saturates
+constexpr double kAirFor = 0.4, kEntry = 0.05, kExit = 0.1;       // s
 
 class Draw {
  public:
@@ -79,10 +80,10 @@ Material draw_material(Draw& draw) {
 // The spindle's range spans several lobes; the higher their numbers, the shallower the pockets between them.
 SpindleLimits draw_spindle(Draw& draw, CellClass kind, double tool_hz, int teeth) {
   const double step = kTwoPi * tool_hz / teeth;  // first of n_k
-  const double fastest_lobe = kind == CellClass::none ? draw.from(2.5, 6.5) : draw.from(1.3, 3.3);
+  const double fastest_lobe = kind == CellClass::none ? draw.from(3.0, 6.0) : draw.from(1.3, 3.3);
   SpindleLimits spindle;
   spindle.max_speed = std::min(step / fastest_lobe, rpm_to_rad_s(24000.0));
-  spindle.min_speed = std::max(spindle.max_speed * draw.from(0.4, 0.65), rpm_to_rad_s(600.0));
+  spindle.min_speed = std::max(spindle.max_speed * draw.from(0.4, 0.65), kSlowest);
   spindle.acceleration = rpm_to_rad_s(draw.log_from(2000.0, 8000.0));
   spindle.jerk = spindle.acceleration * draw.from(8.0, 12.0);
   return spindle;
@@ -104,11 +105,12 @@ RandomCell draw_cell(Draw& draw, CellClass kind) {
   cell.cut.radial_depth = std::min(immersed, 1.0) * cell.tool.diameter;
   cell.cut.feed_per_tooth = 1e-3 * draw.from(0.03, 0.08);
   cell.cut.feed_direction = draw.from(0.0, deg_to_rad(90.0));
-  cell.cut.spindle_speed = draw.from(cell.spindle.min_speed, cell.spindle.max_speed);
+  cell.cut.spindle_speed = std::lerp(cell.spindle.min_speed, cell.spindle.max_speed, draw.from(0.0, 1.0));
   cell.controller.cycle = 1e-3 * draw.from(4.0, 12.0);
   cell.controller.lag = 1e-3 * draw.from(10.0, 20.0);
   cell.controller.spindle_time_constant = draw.from(0.2, 0.5);
   cell.seed = static_cast<std::uint64_t>(draw.whole(1, 1'000'000));
+  if (cell.seed % 2 == 0) cell.free_turn = deg_to_rad(15.0 + static_cast<double>(cell.seed % 46));
   return cell;
 }
 
@@ -158,7 +160,8 @@ std::optional<double> choose_depth(Draw& draw, const LobeDiagram& diagram, Rando
     const double most = std::min(worst_limit(diagram, cell.cut.spindle_speed, kAround) / (1.02 + kSound), kDeepest);
     return most > 1e-4 ? between(0.6 * most, most) : std::nullopt;
   }
-  const double least = 1.02 * here / (1.0 + kTruly), most = std::min(kMostOverLimit * here, kDeepest);
+  const double least = 1.02 * here / (1.0 + kTruly),
+               most = std::min((cell.kind == CellClass::none ? kMostWithoutPocket : kMostOverLimit) * here, kDeepest);
   if (cell.kind == CellClass::pocket) return between(least, std::min(most, cell.pocket_margin / (1.02 + kPocket)));
   double deepest = 0.0;
   for (int i = 0; i < diagram.point_count; ++i) {
@@ -246,6 +249,7 @@ RandomCell random_cell(CellClass kind, std::uint64_t seed, std::uint64_t index, 
   Draw draw{std::seed_seq{static_cast<std::uint64_t>(kind), seed, index}};
   for (int i = 0; i < kMostDraws; ++i) {
     RandomCell cell = draw_cell(draw, kind);
+    if (cell.spindle.max_speed < kLeastRange * cell.spindle.min_speed) continue;
     const LobeDiagram diagram =
         compute_lobe_diagram(cell.tool, cell.material, cell.cut, cell.spindle, cell.modes, {.points = 161});
     cell.depth_limit = depth_limit_at(diagram, cell.cut.spindle_speed);

@@ -35,6 +35,8 @@ struct RandomCell {
   SpindleLimits spindle;
   std::vector<Mode> modes, map_modes;  // of the machine, and as the monitor knows them
   ControllerScript controller;
+  double free_turn =
+      0.0;  // rad, that the path leaves the feed direction to both sides; 0: none, as in half of the cells
   Schedule axial_depth;
   double duration = 0.0;                      // s
   double deeper_from = 0.0, deep_from = 0.0;  // s: the sound depth is left, the deepest reached

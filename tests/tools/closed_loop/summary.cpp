@@ -72,7 +72,7 @@ struct Counted {
 };
 
 std::string indices(const std::vector<const CellRun*>& runs) {
-  constexpr std::size_t kShown = 12;
+  constexpr std::size_t kShown = 40;
   std::string text;
   for (std::size_t i = 0; i < std::min(runs.size(), kShown); ++i)
     text.append(i == 0 ? " (cells " : " ").append(std::to_string(runs[i]->index));
@@ -141,12 +141,14 @@ std::string medians(const std::vector<CellRun>& runs) {
       if (run.problem.empty() && run.metrics.chattered) values.push_back(value(run.metrics));
     return median(values);
   };
+  const double down = of([](const RunMetrics& m) { return m.down_after; });
   return printed(
-      "medians: alarm %.0f ms after the chatter, down %.2f s after the alarm (allowed %.2f), peak %.1f um, "
+      "medians: alarm %.0f ms after the chatter, down %s after the alarm (allowed %.2f s), peak %.1f um, "
       "remains %.2f um, pocket itself %.2f um, sound cut before %.2f um\n",
       1e3 * of([](const RunMetrics& m) { return m.alarm - m.chatter_from; }),
-      of([](const RunMetrics& m) { return m.down_after; }), of([](const RunMetrics& m) { return m.allowed; }),
-      1e6 * of([](const RunMetrics& m) { return m.peak; }), 1e6 * of([](const RunMetrics& m) { return m.settled; }),
+      (down < RunMetrics::kFar ? printed("%.2f s", down) : "not").c_str(),
+      of([](const RunMetrics& m) { return m.allowed; }), 1e6 * of([](const RunMetrics& m) { return m.peak; }),
+      1e6 * of([](const RunMetrics& m) { return m.settled; }),
       1e6 * of([](const RunMetrics& m) { return m.in_pocket; }), 1e6 * of([](const RunMetrics& m) { return m.sound; }));
 }
 
@@ -217,7 +219,8 @@ std::string settings_text(const CellRun& run) {
 
 std::string csv_header() {
   return "index,spindle_speed_rpm,axial_depth_mm,depth_limit_mm,pocket_rpm,pocket_margin,predicted_hz,chatter_hz,"
-         "chatter_from_s,alarm_s,allowed_s,down_after_s,ended_s,peak_um,at_alarm_um,at_correction_um,sound_um,"
+         "chatter_from_s,alarm_s,allowed_s,down_after_s,down_to_noise_after_s,ended_s,peak_um,at_alarm_um,at_"
+         "correction_um,sound_um,"
          "settled_um,floor_um,targets,spells,onsets,limit_cycle,stopped,asked,reason,problem\n";
 }
 
@@ -228,8 +231,8 @@ std::string csv_row(const CellRun& run) {
   for (const double value :
        {rad_s_to_rpm(run.cell.cut.spindle_speed), 1e3 * run.cell.cut.axial_depth, 1e3 * run.cell.depth_limit,
         rad_s_to_rpm(run.cell.pocket_speed), run.cell.pocket_margin, run.cell.chatter_hz, m.chatter_hz, m.chatter_from,
-        m.alarm, m.allowed, m.down_after, m.ended, 1e6 * m.peak, 1e6 * m.at_alarm, 1e6 * m.at_correction, 1e6 * m.sound,
-        1e6 * m.settled, 1e6 * m.in_pocket})
+        m.alarm, m.allowed, m.down_after, m.down_to_noise_after, m.ended, 1e6 * m.peak, 1e6 * m.at_alarm,
+        1e6 * m.at_correction, 1e6 * m.sound, 1e6 * m.settled, 1e6 * m.in_pocket})
     row.append(",").append(number(value));
   for (const int count : {m.targets, m.spells, m.onsets, int{m.limit_cycle}, int{m.stopped}})
     row.append(",").append(std::to_string(count));

@@ -22,17 +22,17 @@ const char* milling_name(Milling milling) {
   return milling == Milling::down ? "down" : milling == Milling::up ? "up" : "slot";
 }
 
-// Ten samples of three axes in a frame, +-330 g.
+// Ten samples of three axes in a frame, +-500 g.
 std::string dbc_text() {
   std::ostringstream out;
   out << "VERSION \"\"\nNS_ :\nBS_:\nBU_: SENSOR DRIVE MONITOR\n\nBO_ 288 Vibration: 64 SENSOR\n"
          " SG_ Counter : 0|16@1+ (1,0) [0|65535] \"\" MONITOR\n";
   for (int i = 0, bit = 32; i < kSamplesAFrame; ++i)
     for (const char axis : {'X', 'Y', 'Z'}) {
-      out << " SG_ " << axis << i << " : " << bit << "|16@1- (0.1,0) [0|0] \"m/s^2\" MONITOR\n";
+      out << " SG_ " << axis << i << " : " << bit << "|16@1- (0.15,0) [0|0] \"m/s^2\" MONITOR\n";
       bit += 16;
     }
-  out << "\nBO_ 304 Spindle: 8 DRIVE\n SG_ Speed : 0|32@1+ (0.1,0) [0|60000] \"rpm\" MONITOR\n\n"
+  out << "\nBO_ 304 Spindle: 8 DRIVE\n SG_ Speed : 0|32@1+ (0.15,0) [0|60000] \"rpm\" MONITOR\n\n"
          "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"reserved\",\"reserved\","
          "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\","
          "\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\n"
@@ -64,7 +64,10 @@ std::string cell_text(const RandomCell& cell, const std::string& map) {
       << "\"\ninterpolation = \"modal\"\nposture = \"home\"\n\n"
          "[can]\nbus = \"local:campaign\"\ndbc = \"cell.dbc\"\n[[can.accelerometer]]\nsample_rate_hz = 25600\n"
          "x = \"Vibration.X{0..9}\"\ny = \"Vibration.Y{0..9}\"\nz = \"Vibration.Z{0..9}\"\n"
-         "counter = \"Vibration.Counter\"\nunit = \"m/s^2\"\n[can.spindle]\nspeed_rpm = \"Spindle.Speed\"\n";
+         "counter = \"Vibration.Counter\"\nunit = \"m/s^2\"\n[can.spindle]\nspeed_rpm = \"Spindle.Speed\"\n\n"
+         "[compensation]\nspindle_time_constant_s = "
+      << number(cell.controller.spindle_time_constant)
+      << "\nfree_feed_turn_deg = " << number(rad_to_deg(cell.free_turn)) << '\n';
   return out.str();
 }
 
@@ -76,7 +79,7 @@ std::string scenario_text(const RandomCell& cell) {
     out << "; pocket at " << csv_number(rad_s_to_rpm(cell.pocket_speed)) << " rpm, margin "
         << csv_number(cell.pocket_margin);
   out << ".\ncell = \"cell.toml\"\nduration_s = " << csv_number(cell.duration)
-      << "\nsensor_noise_m_per_s2 = 0.6\nseed = " << cell.seed << "\n\n[program]\naxial_depth_mm = [";
+      << "\nsensor_noise_m_per_s2 = 0.75\nseed = " << cell.seed << "\n\n[program]\naxial_depth_mm = [";
   for (std::size_t i = 0; i < cell.axial_depth.size(); ++i)
     out << (i == 0 ? "[" : ", [") << csv_number(cell.axial_depth[i].time) << ", "
         << csv_number(1e3 * cell.axial_depth[i].value) << ']';
