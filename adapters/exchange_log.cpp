@@ -22,11 +22,11 @@ std::optional<std::string> unescaped(std::string_view text) {
       continue;
     }
     unsigned value = 0;
-    if (i + 4 > text.size() || text[i + 1] != 'x') return std::nullopt;
-    const auto [end, error] = std::from_chars(&text[i + 2], &text[i + 2] + 2, value, 16);
-    if (error != std::errc{} || end != &text[i + 2] + 2) return std::nullopt;
+    if (i + 3 > text.size()) return std::nullopt;
+    const auto [end, error] = std::from_chars(&text[i + 1], &text[i + 1] + 2, value, 16);
+    if (error != std::errc{} || end != &text[i + 1] + 2) return std::nullopt;
     bytes += static_cast<char>(value);
-    i += 3;
+    i += 2;
   }
   return bytes;
 }
@@ -67,8 +67,8 @@ std::string exchange_line(const ExchangeEntry& entry) {
     if (byte >= 0x20 && byte < 0x7F && c != '\\') {
       line += c;
     } else {
-      std::array<char, 5> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\x%02x", byte);
+      std::array<char, 4> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\%02x", byte);
       line += escape.data();
     }
   }

@@ -28,13 +28,13 @@ TEST(ExchangeLog, KeepsEveryByte) {
 }
 
 TEST(ExchangeLog, ShowsTextAsItIs) {
-  EXPECT_EQ(exchange_line({12, ExchangeKind::packet, "<Rob X=\"1\"/>\n\\"}), R"(12 packet <Rob X="1"/>\x0a\x5c)");
+  EXPECT_EQ(exchange_line({12, ExchangeKind::packet, "<Rob X=\"1\"/>\n\\"}), R"(12 packet <Rob X="1"/>\0a\5c)");
 }
 
 TEST(ExchangeLog, NamesTheLineThatItCannotRead) {
   const TempFolder folder;
   for (const char* line :
-       {"packet <Rob/>", "12 parcel x", "12 packet", "x packet y", R"(12 packet \x0)", R"(12 packet \y00)"}) {
+       {"packet <Rob/>", "12 parcel x", "12 packet", "x packet y", R"(12 packet \0)", R"(12 packet \y0)"}) {
     const std::string file = folder.write("bad.txt", std::string{"# a comment\n\n1 packet x\n"} + line + "\n").string();
     EXPECT_EQ(message_of<InputError>([&] { read_exchange(file); }),
               file + ":4: is not 'TIME KIND BYTES' as an adapter's --record writes it");
