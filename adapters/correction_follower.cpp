@@ -17,6 +17,7 @@ constexpr double kSlowReturn = 0.2;        // of the rate at which a correction 
 constexpr double kLongestStep_s = 0.1;     // a pause of the controller must not become a jump
 constexpr double kStandingSpindle_rpm = 1.0;
 constexpr double kVariationRises_s = 1.0;  // until the full amplitude
+constexpr double kPathTurnsAway = 0.1;     // rad, beyond what we turn it ourselves
 constexpr double kSameRelative = 1e-9;
 
 template <class... Values>
@@ -84,6 +85,8 @@ std::optional<Answer> CorrectionFollower::receive(const Correction& correction, 
     correction_.reset();
     stopped_ = true;
   } else {
+    if (correction.kind == CorrectionKind::feed_direction && !follows(CorrectionKind::feed_direction))
+      path_direction_ = programmed_direction();
     correction_ = correction;
     expires_ns_ = now_ns + static_cast<std::int64_t>((1e-3 * correction.valid_for_ms - age) * 1e9);
     if (moves_spindle() && correction.feed_override > settings_.max_feed_override * (1.0 + kSameRelative))
@@ -134,13 +137,21 @@ ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
 }
 
 double CorrectionFollower::turn_to(double direction) const {
-  return std::remainder(direction - program_.feed_direction, kTwoPi);
+  return std::remainder(direction - path_direction_, kTwoPi);
+}
+
+// The program's own direction: how the tool moves, less what was made of it here.
+double CorrectionFollower::programmed_direction() const {
+  const double share = program_.feed_rate_m_per_s > 0.0 ? aside_m_per_s_ / program_.feed_rate_m_per_s : 0.0;
+  return program_.feed_direction - std::asin(std::clamp(share, -1.0, 1.0));
 }
 
 ShortText CorrectionFollower::reason_against_turn(const Correction& c) const {
   if (!std::isfinite(c.feed_direction)) return reason("feed_direction_rad is no number");
   if (!(program_.feed_rate_m_per_s > 0.0)) return reason("the tool does not move, its feed direction is not known");
-  const double turn = turn_to(c.feed_direction);
+  const bool goes_on = follows(CorrectionKind::feed_direction);
+  const double turn =
+      goes_on ? turn_to(c.feed_direction) : std::remainder(c.feed_direction - programmed_direction(), kTwoPi);
   if (std::abs(turn) > settings_.max_turn)
     return reason("a turn by %.0f deg; the path can be moved aside for %.0f deg at most", rad_to_deg(turn),
                   rad_to_deg(settings_.max_turn));
@@ -203,14 +214,20 @@ void CorrectionFollower::move_feed(double step) {
 }
 
 void CorrectionFollower::move_path(double step) {
-  const double turn = follows(CorrectionKind::feed_direction) ? turn_to(correction_->feed_direction) : 0.0;
+  // Where the program's path itself has turned away, the direction asked for has lost its sense.
+  if (follows(CorrectionKind::feed_direction) &&
+      std::abs(turn_to(program_.feed_direction)) > settings_.max_turn + kPathTurnsAway)
+    correction_.reset();
+  const double before = path_offset_;
   const double farthest = settings_.path_speed_m_per_s * step;
-  if (!follows(CorrectionKind::feed_direction) || std::abs(turn) > settings_.max_turn) {
-    path_offset_ = toward(path_offset_, 0.0, kSlowReturn * farthest);  // also where the program's path has turned away
-    return;
+  if (follows(CorrectionKind::feed_direction)) {
+    const double aside = program_.feed_rate_m_per_s * std::sin(turn_to(correction_->feed_direction)) * step;
+    path_offset_ = std::clamp(path_offset_ + std::clamp(aside, -farthest, farthest), -settings_.max_path_offset,
+                              settings_.max_path_offset);
+  } else {
+    path_offset_ = toward(path_offset_, 0.0, kSlowReturn * farthest);
   }
-  const double aside = std::clamp(program_.feed_rate_m_per_s * std::sin(turn) * step, -farthest, farthest);
-  path_offset_ = std::clamp(path_offset_ + aside, -settings_.max_path_offset, settings_.max_path_offset);
+  if (step > 0.0) aside_m_per_s_ = (path_offset_ - before) / step;
 }
 
 }  // namespace stillcut

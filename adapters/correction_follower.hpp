@@ -79,7 +79,8 @@ class CorrectionFollower {
   [[nodiscard]] ShortText reason_to_refuse(const Correction& correction, double age) const;
   [[nodiscard]] ShortText reason_against_speed(const Correction& correction) const;
   [[nodiscard]] ShortText reason_against_turn(const Correction& correction) const;
-  [[nodiscard]] double turn_to(double direction) const;
+  [[nodiscard]] double turn_to(double direction) const;  // rad, from the program's path
+  [[nodiscard]] double programmed_direction() const;
   void move_spindle(double step);
   void move_feed(double step);
   void move_path(double step);
@@ -102,7 +103,8 @@ class CorrectionFollower {
   // Of the setpoint: the spindle's mean, the variation around it, and what comes out of both.
   bool spindle_moved_ = false;  // false: as programmed, whatever that is
   double mean_rpm_ = 0.0, speed_rpm_ = 0.0, variation_ratio_ = 0.0, variation_hz_ = 0.0, phase_ = 0.0;
-  double feed_ = 1.0, path_offset_ = 0.0;
+  double feed_ = 1.0, path_offset_ = 0.0, aside_m_per_s_ = 0.0;
+  double path_direction_ = 0.0;  // rad, of the program's path when a feed direction was first asked for
   FollowerCounters counters_;
 };
 

@@ -251,14 +251,16 @@ TEST(CorrectionFollower, MovesThePathAsideForAFeedDirectionAndBack) {
   Cell cell;
   Correction turn = speed_correction(0.0, 1.0);
   turn.kind = CorrectionKind::feed_direction;
+  turn.feed_direction = 0.2;
+  EXPECT_EQ(cell.refused(cell.next(turn)), "a turn by 11 deg; the path can be moved aside for 10 deg at most");
   turn.feed_direction = 0.1;
   const Setpoint after = cell.hold(turn, 50);
   EXPECT_NEAR(after.path_offset, 0.03 * std::sin(0.1) * 50 * 0.004, 1e-12);  // feed times the turn's sine
   EXPECT_EQ(after.spindle_change_rpm, 0.0);
   EXPECT_EQ(cell.hold(turn, 500).path_offset, 1e-3);
   EXPECT_EQ(cell.refused(cell.next(turn)), "the path stands at its limit, 1.0 mm aside");
-  turn.feed_direction = 0.2;
-  EXPECT_EQ(cell.refused(cell.next(turn)), "a turn by 11 deg; the path can be moved aside for 10 deg at most");
+  cell.run(1, {9000.0, 0.03, 1.5});  // a corner of the path
+  EXPECT_LT(cell.run(1).path_offset, 1e-3);
   turn.feed_direction = -0.1 + 2.0 * std::numbers::pi;  // the other way, and another way to write it
   EXPECT_EQ(cell.refused(cell.next(turn)), "accepted");
   EXPECT_EQ(cell.run(1000).path_offset, 0.0);

@@ -135,6 +135,8 @@ def converse(programs, speed, feed):
 CONVERSATIONS = {
     "rsi": {"stillcut-rsi": ["./stillcut-rsi", "cell/live.toml", "--listen", "127.0.0.1:49152", "--cycle-ms", "12"],
             "stillcut-rsi-controller": ["./stillcut-rsi-controller", "--cycle-ms", "12", "--csv", "asked.csv"]},
+    "egm": {"stillcut-egm": ["./stillcut-egm", "cell/live.toml", "--listen", "127.0.0.1:6510", "--cycle-ms", "12"],
+            "stillcut-egm-controller": ["./stillcut-egm-controller", "--cycle-ms", "12", "--csv", "asked.csv"]},
 }
 
 if __name__ == "__main__":
