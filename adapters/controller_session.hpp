@@ -37,6 +37,7 @@ class ControllerSession {
   // The state to publish after a cycle; at most every 10 ms one.
   std::optional<RobotState> state_due(std::int64_t now_ns);
   void started_again() { follower_.started_again(); }
+  void hold_back(const char* reason) { follower_.hold_back(reason); }
 
   [[nodiscard]] const SessionCounters& counters() const { return counters_; }
   [[nodiscard]] const FollowerCounters& follower_counters() const { return follower_.counters(); }

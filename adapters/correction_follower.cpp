@@ -102,6 +102,7 @@ ShortText CorrectionFollower::reason_to_refuse(const Correction& c, double age) 
   if (age > 1e-3 * c.valid_for_ms) return reason("too late: %.0f ms on its way", 1e3 * age);
   if (const char* cannot = settings_.refusals.at(static_cast<std::size_t>(c.kind))) return reason("%s", cannot);
   if (c.kind == CorrectionKind::release || c.kind == CorrectionKind::stop_request) return {};
+  if (held_back_ != nullptr) return reason("%s", held_back_);
   if (stopped_) return reason("stopped; start the program again at the controller");
   switch (c.kind) {
     case CorrectionKind::spindle_speed:
@@ -169,6 +170,7 @@ Setpoint CorrectionFollower::cycle(std::int64_t now_ns, const ProgramState& prog
     correction_.reset();
     ++counters_.lapsed;
   }
+  if (held_back_ != nullptr) correction_.reset();
   move_spindle(step);
   move_feed(step);
   move_path(step);

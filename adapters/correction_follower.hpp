@@ -71,6 +71,10 @@ class CorrectionFollower {
   // A person has started the controller again: an earlier stop request is done with.
   void started_again() { stopped_ = false; }
 
+  // While there is a reason (its text must outlive this): nothing is followed, what is in force is dropped, and every
+  // message but a release or a stop is refused with it. nullptr: none any more.
+  void hold_back(const char* reason) { held_back_ = reason; }
+
   [[nodiscard]] const FollowerCounters& counters() const { return counters_; }
 
  private:
@@ -94,6 +98,7 @@ class CorrectionFollower {
   std::optional<Correction> correction_;  // in force
   std::int64_t expires_ns_ = 0, cycle_ns_ = 0;
   bool stopped_ = false, cycled_ = false;
+  const char* held_back_ = nullptr;
 
   // Of the stream of messages. The monitor's clock is not ours: an age is how much later than the quickest one it came.
   bool heard_ = false;

@@ -268,6 +268,16 @@ TEST(CorrectionFollower, MovesThePathAsideForAFeedDirectionAndBack) {
   EXPECT_EQ(cell.refused(cell.next(turn)), "the tool does not move, its feed direction is not known");
 }
 
+TEST(CorrectionFollower, LetsGoWhileItIsHeldBackAndSaysWhy) {
+  Cell cell;
+  cell.hold(speed_correction(7380.0, 0.82), 250);
+  cell.follower.hold_back("the operator has the override");
+  EXPECT_EQ(cell.refused(cell.next(speed_correction(7380.0, 0.82))), "the operator has the override");
+  EXPECT_EQ(cell.run(1000).spindle_change_rpm, 0.0);
+  cell.follower.hold_back(nullptr);
+  EXPECT_EQ(cell.refused(cell.next(speed_correction(7380.0, 0.82))), "accepted");
+}
+
 TEST(CorrectionFollower, StaysStoppedUntilTheControllerIsStartedAgain) {
   Cell cell;
   cell.hold(speed_correction(7380.0, 0.82), 250);

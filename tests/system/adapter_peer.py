@@ -137,6 +137,8 @@ CONVERSATIONS = {
             "stillcut-rsi-controller": ["./stillcut-rsi-controller", "--cycle-ms", "12", "--csv", "asked.csv"]},
     "egm": {"stillcut-egm": ["./stillcut-egm", "cell/live.toml", "--listen", "127.0.0.1:6510", "--cycle-ms", "12"],
             "stillcut-egm-controller": ["./stillcut-egm-controller", "--cycle-ms", "12", "--csv", "asked.csv"]},
+    "linuxcnc": {"stillcut-linuxcnc": ["./stillcut-linuxcnc", "cell/live.toml", "--server", "127.0.0.1:5007"],
+                 "stillcut-linuxcnc-controller": ["./stillcut-linuxcnc-controller", "--csv", "asked.csv"]},
 }
 
 if __name__ == "__main__":

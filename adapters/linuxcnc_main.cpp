@@ -1,0 +1,126 @@
+// stillcut-linuxcnc: Stillcut's corrections for LinuxCNC, through linuxcncrsh.
+#include <spdlog/spdlog.h>
+
+#include <thread>
+
+#include "adapters/adapter_run.hpp"
+#include "adapters/exchange_log.hpp"
+#include "adapters/lcm_link.hpp"
+#include "adapters/linuxcnc_adapter.hpp"
+#include "adapters/tcp_lines.hpp"
+#include "adapters/udp_port.hpp"
+
+namespace stillcut {
+namespace {
+
+constexpr int kConnectWithin_ms = 1000;
+constexpr int kWaitForLine_ms = 5;
+constexpr std::chrono::milliseconds kConnectAgain{500};
+
+struct LinuxCncOptions {
+  AdapterOptions adapter;
+  std::string server = "127.0.0.1:5007";
+  LinuxCncLogin login;
+};
+
+class LinuxCncLoop {
+ public:
+  LinuxCncLoop(const LinuxCncOptions& options, const AdapterSettings& settings)
+      : recorder_{options.adapter.record, "stillcut-linuxcnc " + options.adapter.cell},
+        adapter_{settings.session, options.login},
+        server_{ipv4_address(options.server)},
+        link_{open_lcm(settings.lcm_url)} {}
+
+  // One connection, until it breaks or the end is asked for.
+  void talk(const EndSignal& end) {
+    const int socket = tcp_connect(server_, kConnectWithin_ms);
+    if (socket < 0) {
+      if (!complained_) spdlog::warn("LinuxCNC does not listen; is linuxcncrsh started? Trying again");
+      complained_ = true;
+      std::this_thread::sleep_for(kConnectAgain);
+      return;
+    }
+    complained_ = false;
+    spdlog::info("connected");
+    TcpLines lines{socket};
+    const char* hang_up = nullptr;
+    while (hang_up == nullptr && !lines.gone() && !end.came()) {
+      const std::optional<std::string> line = lines.next(kWaitForLine_ms);
+      const std::int64_t now = steady_ns();
+      take_corrections();
+      const CncOutput output = adapter_.line(line.value_or(""), now);
+      record(line.value_or(""), output, now);
+      if (!output.send.empty()) lines.send(output.send);
+      if (output.state) link_.say(*output.state);
+      if (output.warning != nullptr) spdlog::warn("{}", output.warning);
+      hang_up = output.hang_up;
+    }
+    lines.send(adapter_.farewell());
+    adapter_.disconnected();
+    spdlog::info("disconnected{}{}", hang_up == nullptr ? "" : ": ", hang_up == nullptr ? "" : hang_up);
+    if (hang_up != nullptr) std::this_thread::sleep_for(kConnectAgain);
+  }
+
+  [[nodiscard]] std::string summary() const {
+    return summary_of(adapter_.session().counters(), adapter_.session().follower_counters()) + ", replies bad " +
+           std::to_string(adapter_.bad()) + ", commands refused " + std::to_string(adapter_.refused()) +
+           ", published " + std::to_string(link_.sent());
+  }
+
+ private:
+  void take_corrections() {
+    HeardCorrection heard;
+    while (link_.next(heard)) {
+      recorder_.put(heard.received_ns, heard.correction);
+      const auto answer = adapter_.receive(heard.correction, heard.received_ns);
+      if (!answer) continue;
+      link_.say(*answer);
+      recorder_.put(heard.received_ns, *answer);
+      if (!answer->ack.accepted) spdlog::warn("refused: {}", answer->reason.data());
+    }
+  }
+  // An empty line stands for time that has passed: kept where it led to something.
+  void record(std::string_view line, const CncOutput& output, std::int64_t now) {
+    if (line.empty() && output.send.empty() && !output.state) return;
+    recorder_.put(now, ExchangeKind::packet, line);
+    if (!output.send.empty()) recorder_.put(now, ExchangeKind::answer, output.send);
+    if (output.state) recorder_.put(now, *output.state);
+  }
+
+  bool complained_ = false;
+  ExchangeRecorder recorder_;
+  LinuxCncAdapter adapter_;
+  sockaddr_in server_;
+  LcmLink link_;
+};
+
+void run_linuxcnc_adapter(const LinuxCncOptions& options) {
+  AdapterSettings settings = adapter_settings(options.adapter, linuxcnc_refusals());
+  settings.session.follower.max_variation_hz = 0.1 / (1e-3 * options.adapter.cycle_ms);  // ten setpoints a period
+  set_up_log("stillcut-linuxcnc");
+  const EndSignal end{options.adapter.duration_s};
+  LinuxCncLoop loop{options, settings};
+  spdlog::info("stillcut-linuxcnc talks to {}, LCM {}", options.server, settings.lcm_url);
+  while (!end.came()) loop.talk(end);
+  spdlog::info("ended: {}", loop.summary());
+}
+
+}  // namespace
+}  // namespace stillcut
+
+int main(int argc, char** argv) {
+  using namespace stillcut;
+  CLI::App app{"Stillcut's corrections for LinuxCNC: feed and spindle overrides through linuxcncrsh (TCP)",
+               "stillcut-linuxcnc"};
+  LinuxCncOptions options;
+  options.adapter.cycle_ms = 50.0;
+  add_adapter_options(app, options.adapter);
+  app.add_option("--server", options.server, "where linuxcncrsh listens, ADDRESS:PORT")->capture_default_str();
+  app.add_option("--connect-password", options.login.connect_password, "of linuxcncrsh")->capture_default_str();
+  app.add_option("--enable-password", options.login.enable_password, "of linuxcncrsh")->capture_default_str();
+  app.add_option("--cycle-ms", options.adapter.cycle_ms, "how often it is asked, and overrides set")
+      ->capture_default_str()
+      ->check(CLI::Range(20.0, 200.0));
+  app.footer("Example:\n  stillcut-linuxcnc cell.toml --server 192.168.1.20:5007\nSee docs/adapters.md.");
+  return run_adapter_program(app, argc, argv, [&] { run_linuxcnc_adapter(options); });
+}
