@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "adapters/udp_port.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
@@ -10,6 +11,10 @@ namespace {
 constexpr int kUsage = 2, kBadInput = 3, kComponentMissing = 4;  // as every program of Stillcut ends
 
 }  // namespace
+
+std::string complain_of_address(const std::string& text) {
+  return read_ipv4_address(text) ? "" : "'" + text + "' is no address; write 192.168.1.10:49152, or the port alone";
+}
 
 void add_adapter_options(CLI::App& app, AdapterOptions& options) {
   app.add_option("CELL", options.cell, "cell file: spindle limits, programmed speed, LCM address")->required();

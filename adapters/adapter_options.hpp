@@ -20,6 +20,9 @@ struct AdapterOptions {
   double duration_s = 0.0;  // 0: until SIGINT or SIGTERM
 };
 
+// For an option that holds an address: ADDRESS:PORT, or PORT.
+std::string complain_of_address(const std::string& text);
+
 void add_adapter_options(CLI::App& app, AdapterOptions& options);
 
 struct AdapterSettings {

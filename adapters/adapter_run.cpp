@@ -18,6 +18,7 @@ constexpr int kWait_ms = 20;
 constexpr int kPriority = 60;  // SCHED_FIFO; below the monitor's loop
 constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
 constexpr std::int64_t kPeerForgotten_ns = 1'000'000'000;
+constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;
 
 // The one controller that is served: the first to speak, until it has been silent for a second.
 class ServedPeer {
@@ -49,19 +50,20 @@ class UdpAdapterLoop {
         port_{ipv4_address(options.listen)},
         link_{open_lcm(settings.lcm_url)} {}
 
-  void turn() {
+  // False: nothing moves because of a correction, or no packet came.
+  bool turn() {
     const UdpPort::Packet packet = port_.receive(kWait_ms);
     const std::int64_t now = steady_ns();
     take_corrections(now);
-    if (packet.bytes.empty()) return;
+    if (packet.bytes.empty()) return false;
     if (!peer_.serves(packet.from, now)) {
       ++wire_.strangers;
-      return;
+      return corrected_;
     }
     recorder_.put(now, ExchangeKind::packet, text_of(packet.bytes));
     const PacketOutput output = adapter_.packet(packet.bytes, now);
     if (output.why_not != nullptr) complain(output.why_not, now);
-    if (output.answer.empty()) return;
+    if (output.answer.empty()) return corrected_;
     peer_.heard(packet.from, now);
     port_.send(packet.from, output.answer);
     if (steady_ns() - packet.arrived_ns > cycle_ns_) ++wire_.late;
@@ -69,6 +71,15 @@ class UdpAdapterLoop {
     if (output.state) {
       link_.say(*output.state);
       recorder_.put(now, *output.state);
+    }
+    corrected_ = !output.settled;
+    return corrected_;
+  }
+  // Brings the controller back to its program, for as long as it speaks and no second signal comes.
+  void end(const EndSignal& signal) {
+    adapter_.end();
+    const std::int64_t longest = steady_ns() + kLongestEnd_ns;
+    while (turn() && steady_ns() < longest && !signal.came_again()) {
     }
   }
 
@@ -98,6 +109,7 @@ class UdpAdapterLoop {
   }
 
   std::int64_t cycle_ns_, complain_again_ns_ = 0;
+  bool corrected_ = false;
   ExchangeRecorder recorder_;
   PacketAdapter adapter_;
   ServedPeer peer_;
@@ -116,9 +128,11 @@ EndSignal::EndSignal(double duration_s) {
   if (duration_s > 0.0) ends_ns_ = steady_ns() + static_cast<std::int64_t>(duration_s * 1e9);
 }
 
-bool EndSignal::came() const {
+bool EndSignal::came() const { return came_again() || (ends_ns_ > 0 && steady_ns() >= ends_ns_); }
+
+bool EndSignal::came_again() const {
   const timespec at_once{0, 0};
-  return sigtimedwait(&signals_, nullptr, &at_once) > 0 || (ends_ns_ > 0 && steady_ns() >= ends_ns_);
+  return sigtimedwait(&signals_, nullptr, &at_once) > 0;
 }
 
 void set_up_log(const std::string& program) {
@@ -149,6 +163,7 @@ void run_udp_adapter(const UdpAdapterOptions& options, const AdapterSettings& se
   raise_priority();  // after the threads of the link were made: they stay ordinary
   spdlog::info("{} listens on UDP {}, LCM {}", options.program, options.listen, settings.lcm_url);
   while (!end.came()) loop.turn();
+  loop.end(end);
   spdlog::info("ended: {}", loop.summary());
 }
 

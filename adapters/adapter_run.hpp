@@ -14,7 +14,8 @@ namespace stillcut {
 class EndSignal {
  public:
   explicit EndSignal(double duration_s);
-  [[nodiscard]] bool came() const;
+  [[nodiscard]] bool came() const;        // a signal, or the end of the duration
+  [[nodiscard]] bool came_again() const;  // a signal
 
  private:
   sigset_t signals_{};

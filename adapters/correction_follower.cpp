@@ -100,10 +100,10 @@ ShortText CorrectionFollower::reason_to_refuse(const Correction& c, double age) 
   if (c.valid_for_ms < 1 || c.valid_for_ms > kLongestValid_ms)
     return reason("valid_for_ms is not from 1 to %d", kLongestValid_ms);
   if (age > 1e-3 * c.valid_for_ms) return reason("too late: %.0f ms on its way", 1e3 * age);
-  if (const char* cannot = settings_.refusals.at(static_cast<std::size_t>(c.kind))) return reason("%s", cannot);
+  if (const char* cannot = settings_.refusals.at(static_cast<std::size_t>(c.kind))) return short_text(cannot);
   if (c.kind == CorrectionKind::release || c.kind == CorrectionKind::stop_request) return {};
-  if (held_back_ != nullptr) return reason("%s", held_back_);
-  if (stopped_) return reason("stopped; start the program again at the controller");
+  if (held_back_ != nullptr) return short_text(held_back_);
+  if (stopped_) return short_text("stopped; start the program again at the controller");
   switch (c.kind) {
     case CorrectionKind::spindle_speed:
     case CorrectionKind::speed_variation:
@@ -117,7 +117,7 @@ ShortText CorrectionFollower::reason_to_refuse(const Correction& c, double age) 
 }
 
 ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
-  if (!(program_.spindle_speed_rpm >= kStandingSpindle_rpm)) return reason("the program's spindle stands");
+  if (!(program_.spindle_speed_rpm >= kStandingSpindle_rpm)) return short_text("the program's spindle stands");
   if (!lies_within(c.spindle_speed_rpm, settings_.min_speed_rpm, settings_.max_speed_rpm))
     return reason("spindle_speed_rpm is not from %.0f to %.0f", settings_.min_speed_rpm, settings_.max_speed_rpm);
   if (!lies_within(c.feed_override, settings_.min_feed_override, kHighestOverride))
@@ -148,8 +148,8 @@ double CorrectionFollower::programmed_direction() const {
 }
 
 ShortText CorrectionFollower::reason_against_turn(const Correction& c) const {
-  if (!std::isfinite(c.feed_direction)) return reason("feed_direction_rad is no number");
-  if (!(program_.feed_rate_m_per_s > 0.0)) return reason("the tool does not move, its feed direction is not known");
+  if (!std::isfinite(c.feed_direction)) return short_text("feed_direction_rad is no number");
+  if (!(program_.feed_rate_m_per_s > 0.0)) return short_text("the tool does not move, its feed direction is not known");
   const bool goes_on = follows(CorrectionKind::feed_direction);
   const double turn =
       goes_on ? turn_to(c.feed_direction) : std::remainder(c.feed_direction - programmed_direction(), kTwoPi);

@@ -43,6 +43,11 @@ struct Setpoint {
   double feed_override = 1.0;       // 1: as programmed
   double path_offset = 0.0;         // m, to the left of the feed; 0: on the program's path
   bool stop = false;
+
+  // Back at the program, or stopped: nothing moves any more because of a correction.
+  [[nodiscard]] bool settled() const {
+    return spindle_change_rpm == 0.0 && path_offset == 0.0 && (feed_override == 1.0 || stop);
+  }
 };
 
 struct Answer {

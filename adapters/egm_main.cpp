@@ -1,4 +1,5 @@
 // stillcut-egm: Stillcut's corrections for an ABB controller with Externally Guided Motion.
+#include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
 #include "adapters/egm_options.hpp"
 
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   EgmAnswer answer = EgmAnswer::data;
   add_adapter_options(app, options.adapter);
   app.add_option("--listen", options.listen, "UDP port, or ADDRESS:PORT, that the controller's UdpUc device names")
+      ->check(complain_of_address)
       ->capture_default_str();
   add_egm_options(app, answer, options.adapter.cycle_ms);
   app.add_option("--path-offset", options.adapter.max_path_offset_mm,

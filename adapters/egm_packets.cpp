@@ -70,8 +70,10 @@ ParsedReport parse_egm(std::span<const std::uint8_t> packet) {
   report.block = static_cast<std::int32_t>(robot.move_index() & 0x7FFFFFFFU);
   if (robot.has_from_rapid()) {
     const auto& numbers = robot.from_rapid().numbers();
-    if (numbers.size() > 0) report.spindle_speed_rpm = numbers[0];
-    if (numbers.size() > 0 && std::isnan(numbers[0])) return refuse("the spindle speed from RAPID is no number");
+    if (!numbers.empty()) {
+      if (std::isnan(numbers[0])) return refuse("the spindle speed from RAPID is no number");
+      report.spindle_speed_rpm = numbers[0];
+    }
     if (numbers.size() > 1) {
       if (!(numbers[1] >= 0.0 && numbers[1] <= kLargestBlock)) return refuse("the block from RAPID is out of range");
       report.block = static_cast<std::int32_t>(numbers[1]);

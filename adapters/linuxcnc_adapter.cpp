@@ -18,6 +18,7 @@ constexpr std::array<const char*, 7> kReadings{"GET REL_ACT_POS",   "GET JOINT_P
 constexpr double kMmPerInch = 25.4, kMmPerCm = 10.0, kMetersPerMm = 1e-3;
 constexpr double kHighestPercent = 1000.0, kLastLine = 2e9;
 constexpr const char* kHand = "the operator, or a limit of LinuxCNC, has changed an override";
+constexpr const char* kEnds = "the adapter ends";
 constexpr const char* kNotRunning = "the program does not run";
 constexpr const char* kNotTaken = "LinuxCNC does not take overrides; is the machine on, and no other client enabled?";
 
@@ -183,6 +184,7 @@ void LinuxCncAdapter::decide_who_holds_the_overrides(std::int64_t now_ns) {
   const char* reason = running_ || stopping_ ? nullptr : kNotRunning;
   if (not_taken) reason = kNotTaken;
   if (feed_.hand || spindle_.hand) reason = kHand;
+  if (ending_) reason = kEnds;
   session_.hold_back(reason);
 }
 

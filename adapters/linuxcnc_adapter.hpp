@@ -34,7 +34,9 @@ class LinuxCncAdapter {
   // A line of the server; an empty one: only time has passed. To be called at least once a cycle.
   CncOutput line(std::string_view text, std::int64_t now_ns);
   void disconnected();
-  // The lines that give the operator's overrides back, for the end of the program.
+  // From now on back to the program, and no correction is followed any more.
+  void end() { ending_ = true; }
+  // The lines that give the operator's overrides back at once; empty: nothing of ours is set.
   [[nodiscard]] std::string farewell() const;
 
   [[nodiscard]] const ControllerSession& session() const { return session_; }
@@ -65,7 +67,7 @@ class LinuxCncAdapter {
   ControllerSession session_;
   Phase phase_ = Phase::greeting;
   std::deque<std::string> commands_;  // the first one is sent and not yet answered while waiting_
-  bool waiting_ = false;
+  bool waiting_ = false, ending_ = false;
   std::int64_t sent_ns_ = 0, cycle_started_ns_ = 0, cycles_ = 0, set_refused_ns_ = 0;
   const char* warning_ = nullptr;
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
 #include "adapters/linuxcnc_server.hpp"
 #include "adapters/simulated_controller.hpp"
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
   SimulatedControllerOptions options;
   options.program = "stillcut-linuxcnc-controller";
   std::string listen = "127.0.0.1:5007";
-  app.add_option("--listen", listen, "ADDRESS:PORT or PORT")->capture_default_str();
+  app.add_option("--listen", listen, "ADDRESS:PORT or PORT")->check(complain_of_address)->capture_default_str();
   app.add_option("--csv", options.csv, "write its overrides to FILE, a row every 50 ms");
   app.add_option("--duration", options.duration_s, "end after this many seconds (default: on SIGTERM)");
   app.add_option("--speed-rpm", options.settings.spindle_speed_rpm, "programmed spindle speed")->capture_default_str();

@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
 #include "adapters/exchange_log.hpp"
 #include "adapters/lcm_link.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int kConnectWithin_ms = 1000;
 constexpr int kWaitForLine_ms = 5;
+constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;
 constexpr std::chrono::milliseconds kConnectAgain{500};
 
 struct LinuxCncOptions {
@@ -44,7 +46,14 @@ class LinuxCncLoop {
     spdlog::info("connected");
     TcpLines lines{socket};
     const char* hang_up = nullptr;
-    while (hang_up == nullptr && !lines.gone() && !end.came()) {
+    std::int64_t ends_ns = 0;  // when it must be over, once the end was asked for
+    while (hang_up == nullptr && !lines.gone()) {
+      if (ends_ns == 0 && end.came()) {
+        adapter_.end();
+        ends_ns = steady_ns() + kLongestEnd_ns;
+        ended_ = true;
+      }
+      if (ends_ns > 0 && (adapter_.farewell().empty() || steady_ns() > ends_ns || end.came_again())) break;
       const std::optional<std::string> line = lines.next(kWaitForLine_ms);
       const std::int64_t now = steady_ns();
       take_corrections();
@@ -61,6 +70,7 @@ class LinuxCncLoop {
     if (hang_up != nullptr) std::this_thread::sleep_for(kConnectAgain);
   }
 
+  [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::string summary() const {
     return summary_of(adapter_.session().counters(), adapter_.session().follower_counters()) + ", replies bad " +
            std::to_string(adapter_.bad()) + ", commands refused " + std::to_string(adapter_.refused()) +
@@ -87,7 +97,7 @@ class LinuxCncLoop {
     if (output.state) recorder_.put(now, *output.state);
   }
 
-  bool complained_ = false;
+  bool complained_ = false, ended_ = false;
   ExchangeRecorder recorder_;
   LinuxCncAdapter adapter_;
   sockaddr_in server_;
@@ -101,7 +111,7 @@ void run_linuxcnc_adapter(const LinuxCncOptions& options) {
   const EndSignal end{options.adapter.duration_s};
   LinuxCncLoop loop{options, settings};
   spdlog::info("stillcut-linuxcnc talks to {}, LCM {}", options.server, settings.lcm_url);
-  while (!end.came()) loop.talk(end);
+  while (!loop.ended() && !end.came()) loop.talk(end);
   spdlog::info("ended: {}", loop.summary());
 }
 
@@ -115,7 +125,9 @@ int main(int argc, char** argv) {
   LinuxCncOptions options;
   options.adapter.cycle_ms = 50.0;
   add_adapter_options(app, options.adapter);
-  app.add_option("--server", options.server, "where linuxcncrsh listens, ADDRESS:PORT")->capture_default_str();
+  app.add_option("--server", options.server, "where linuxcncrsh listens, ADDRESS:PORT")
+      ->check(complain_of_address)
+      ->capture_default_str();
   app.add_option("--connect-password", options.login.connect_password, "of linuxcncrsh")->capture_default_str();
   app.add_option("--enable-password", options.login.enable_password, "of linuxcncrsh")->capture_default_str();
   app.add_option("--cycle-ms", options.adapter.cycle_ms, "how often it is asked, and overrides set")

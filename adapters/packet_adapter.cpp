@@ -17,6 +17,7 @@ PacketOutput PacketAdapter::packet(std::span<const std::uint8_t> bytes, std::int
   late_answers_ = parsed.report.late_answers;
   const AnswerHead head{++answers_, static_cast<std::uint32_t>((now_ns - first_ns_) / 1'000'000)};
   output.answer = protocol_.build(parsed.report, *setpoint, head);
+  output.settled = setpoint->settled();
   output.state = session_.state_due(now_ns);
   return output;
 }

@@ -28,6 +28,7 @@ struct PacketOutput {
   std::string answer;  // empty: the packet must not be answered
   std::optional<RobotState> state;
   const char* why_not = nullptr;  // why the packet was dropped as bad
+  bool settled = false;           // nothing moves any more because of a correction
 };
 
 class PacketAdapter {
@@ -38,6 +39,8 @@ class PacketAdapter {
   std::optional<Answer> receive(const Correction& correction, std::int64_t now_ns) {
     return session_.receive(correction, now_ns);
   }
+  // From now on back to the program, and no correction is followed any more.
+  void end() { session_.hold_back("the adapter ends"); }
   PacketOutput packet(std::span<const std::uint8_t> bytes, std::int64_t now_ns);
 
   [[nodiscard]] const ControllerSession& session() const { return session_; }

@@ -1,4 +1,5 @@
 // stillcut-rsi: Stillcut's corrections for a KUKA controller with RobotSensorInterface.
+#include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
 #include "adapters/rsi_xml.hpp"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   options.listen = "49152";
   add_adapter_options(app, options.adapter);
   app.add_option("--listen", options.listen, "UDP port, or ADDRESS:PORT, that the RSI configuration names")
+      ->check(complain_of_address)
       ->capture_default_str();
   app.add_option("--cycle-ms", options.adapter.cycle_ms, "4 (IPO_FAST) or 12")
       ->capture_default_str()

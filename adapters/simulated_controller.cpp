@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
 #include "adapters/udp_port.hpp"
 #include "drivers/files/input_error.hpp"
@@ -53,7 +54,9 @@ void SimulatedController::answer(std::string_view answer) {
 }
 
 void add_controller_options(CLI::App& app, SimulatedControllerOptions& options) {
-  app.add_option("--adapter", options.adapter, "where the adapter listens, ADDRESS:PORT")->capture_default_str();
+  app.add_option("--adapter", options.adapter, "where the adapter listens, ADDRESS:PORT")
+      ->check(complain_of_address)
+      ->capture_default_str();
   app.add_option("--csv", options.csv, "write what it was asked for to FILE, a row a cycle");
   app.add_option("--duration", options.duration_s, "end after this many seconds (default: on SIGTERM)");
   app.add_option("--speed-rpm", options.settings.spindle_speed_rpm, "programmed spindle speed")->capture_default_str();

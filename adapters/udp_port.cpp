@@ -37,7 +37,7 @@ std::int64_t steady_ns() {
       .count();
 }
 
-sockaddr_in ipv4_address(const std::string& text) {
+std::optional<sockaddr_in> read_ipv4_address(const std::string& text) {
   const auto colon = text.rfind(':');
   const std::string host = colon == std::string::npos ? "0.0.0.0" : text.substr(0, colon);
   const std::string_view port = std::string_view{text}.substr(colon == std::string::npos ? 0 : colon + 1);
@@ -47,10 +47,12 @@ sockaddr_in ipv4_address(const std::string& text) {
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
   if (error != std::errc{} || end != port.data() + port.size() ||
       inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
-    throw ComponentError("'" + text + "' is no address; write it as 192.168.1.10:49152, or the port alone");
+    return std::nullopt;
   address.sin_port = htons(number);
   return address;
 }
+
+sockaddr_in ipv4_address(const std::string& text) { return read_ipv4_address(text).value(); }
 
 bool same_peer(const sockaddr_in& a, const sockaddr_in& b) {
   return a.sin_addr.s_addr == b.sin_addr.s_addr && a.sin_port == b.sin_port;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,7 +14,9 @@ namespace stillcut {
 // Monotonic nanoseconds, the clock of all that an adapter does.
 std::int64_t steady_ns();
 
-// "ADDRESS:PORT" in numbers, "49152" for every address of this host. Throws ComponentError.
+// "ADDRESS:PORT" in numbers, or "49152" for every address of this host; nothing where it is neither.
+std::optional<sockaddr_in> read_ipv4_address(const std::string& text);
+// The same of a text that was checked.
 sockaddr_in ipv4_address(const std::string& text);
 
 class UdpPort {

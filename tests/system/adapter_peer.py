@@ -57,9 +57,12 @@ class Monitor:
         self.correction_t = correction_t
         self.classes = {"ROBOT_STATE": robot_state_t, "ROBOT_ACK": correction_ack_t}
         self.lcm, self.sequence, self.asked = Lcm(), 0, pathlib.Path(asked)
-        self.running = {}
-        for name, command in programs.items():
-            self.running[name] = subprocess.Popen(command, stderr=open(name + ".err", "w"))
+        self.programs, self.running = programs, {}
+        for name in programs:
+            self.start(name)
+
+    def start(self, name):
+        self.running[name] = subprocess.Popen(self.programs[name], stderr=open(name + ".err", "a"))
 
     def correction(self, **fields):
         message = self.correction_t()
@@ -125,7 +128,12 @@ def converse(programs, speed, feed):
         monitor.lcm.heard.clear()
         monitor.lcm.listen(1.0, monitor.classes)
         saw["states_without_controller"] = len(monitor.lcm.heard["ROBOT_STATE"])
+        monitor.asked.unlink()
+        monitor.start(controller)  # and now the adapter ends first, in the middle of a correction
+        monitor.until("speed and feed at the controller started again", reached, asked)
         saw["adapter_exit"] = monitor.end(adapter)
+        monitor.until("the program's speed and feed after the adapter's end", nominal)
+        saw["controller_exit"] |= monitor.end(controller)
     finally:
         for process in monitor.running.values():
             process.kill()
