@@ -18,6 +18,8 @@ ControllerSession::ControllerSession(const SessionSettings& settings)
 }
 
 std::optional<Answer> ControllerSession::receive(const Correction& correction, std::int64_t now_ns) {
+  const bool silent = counters_.cycles == 0 || now_ns - last_cycle_ns_ > kSilenceEndsSession_ns;
+  follower_.hold_back(silent ? "the controller is silent" : held_back_);
   std::optional<Answer> answer = follower_.receive(correction, now_ns);
   if (answer) answer->ack.stamp_ns = state_.stamp_ns;  // the controller's clock, as in its state
   return answer;
@@ -51,6 +53,7 @@ std::optional<Setpoint> ControllerSession::cycle(const ControllerReport& report,
       std::isnan(report.spindle_speed_rpm) ? settings_.nominal_speed_rpm : report.spindle_speed_rpm;
   state_.axial_depth = state_.radial_depth = std::nan("");  // no controller knows them: the cell's nominal holds
   state_.block = report.block;
+  follower_.hold_back(held_back_);
   return follower_.cycle(now_ns, {state_.spindle_speed_rpm, state_.feed_rate, state_.feed_direction});
 }
 

@@ -37,7 +37,8 @@ class ControllerSession {
   // The state to publish after a cycle; at most every 10 ms one.
   std::optional<RobotState> state_due(std::int64_t now_ns);
   void started_again() { follower_.started_again(); }
-  void hold_back(const char* reason) { follower_.hold_back(reason); }
+  // As the follower's; a controller that is silent, or has not spoken yet, is such a reason by itself.
+  void hold_back(const char* reason) { held_back_ = reason; }
 
   [[nodiscard]] const SessionCounters& counters() const { return counters_; }
   [[nodiscard]] const FollowerCounters& follower_counters() const { return follower_.counters(); }
@@ -45,6 +46,7 @@ class ControllerSession {
  private:
   SessionSettings settings_;
   CorrectionFollower follower_;
+  const char* held_back_ = nullptr;
   FeedMotion motion_;
   RobotState state_;
   std::int64_t last_counter_ = 0, last_cycle_ns_ = 0, next_state_ns_ = 0;

@@ -1,11 +1,11 @@
-// A simulated LinuxCNC: the part of linuxcncrsh that the adapter uses, with the simulated machine behind it. Without
-// socket and clock; stillcut-linuxcnc-controller puts both around it.
+// A simulated LinuxCNC: the part of linuxcncrsh that the adapter uses, with the simulated machine behind it. The class
+// has neither socket nor clock; run_linuxcnc_controller puts both around it.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "adapters/simulated_program.hpp"
+#include "adapters/simulated_controller.hpp"
 
 namespace stillcut {
 
@@ -37,5 +37,8 @@ class LinuxCncServer {
   int feed_percent_ = 100, spindle_percent_ = 100;
   bool linked_ = false, enabled_ = false, verbose_ = false, machine_on_ = true;
 };
+
+// Serves one client after the other at `listen`, until a signal or the end of the duration.
+void run_linuxcnc_controller(const SimulatedControllerOptions& options, const std::string& listen);
 
 }  // namespace stillcut

@@ -65,15 +65,19 @@ void add_controller_options(CLI::App& app, SimulatedControllerOptions& options) 
       ->default_str("25");
 }
 
+std::ofstream open_controller_csv(const std::string& file) {
+  std::ofstream csv;
+  if (file.empty()) return csv;
+  csv.open(file, std::ios::binary);
+  if (!csv) throw InputError(file, 0, "cannot be written; check the folder and its rights");
+  csv << "time_s,spindle_speed_rpm,spindle_change_rpm,feed_override,path_offset_mm,stopped,late\n" << std::flush;
+  return csv;
+}
+
 void run_simulated_controller(const SimulatedControllerOptions& options, SimulatedController& controller) {
   set_up_log(options.program);
   const EndSignal end{options.duration_s};
-  std::ofstream csv;
-  if (!options.csv.empty()) {
-    csv.open(options.csv, std::ios::binary);
-    if (!csv) throw InputError(options.csv, 0, "cannot be written; check the folder and its rights");
-    csv << kControllerCsvHeader << std::flush;
-  }
+  std::ofstream csv = open_controller_csv(options.csv);
   UdpPort port{ipv4_address("0.0.0.0:0")};
   const sockaddr_in adapter = ipv4_address(options.adapter);
   const auto cycle_ns = static_cast<std::int64_t>(options.cycle_ms * 1e6);

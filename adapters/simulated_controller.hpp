@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -53,8 +54,8 @@ struct SimulatedControllerOptions {
 };
 
 void add_controller_options(CLI::App& app, SimulatedControllerOptions& options);
-inline constexpr const char* kControllerCsvHeader =
-    "time_s,spindle_speed_rpm,spindle_change_rpm,feed_override,path_offset_mm,stopped,late\n";
+// The file of --csv with its header, closed when there is no name. Throws InputError.
+std::ofstream open_controller_csv(const std::string& file);
 void run_simulated_controller(const SimulatedControllerOptions& options, SimulatedController& controller);
 
 }  // namespace stillcut

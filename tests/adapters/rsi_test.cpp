@@ -116,6 +116,30 @@ TEST(RsiLoop, BringsACorrectionToTheControllerAndLetsItLapse) {
   EXPECT_EQ(controller.late(), 0);
 }
 
+TEST(RsiLoop, RefusesWhileTheControllerIsSilent) {
+  SimulatedController controller{rsi_controller_protocol(), {}, 0.004, 4};
+  AdapterLoop loop{rsi_protocol(), rsi_session(), controller};
+  EXPECT_STREQ(loop.say(speed_correction(7380.0, 0.868))->reason.data(), "the controller is silent");
+  loop.run(10);
+  EXPECT_TRUE(loop.say(speed_correction(7380.0, 0.868))->ack.accepted);
+  loop.now_ns += 1'100'000'000;
+  EXPECT_STREQ(loop.say(speed_correction(7380.0, 0.868))->reason.data(), "the controller is silent");
+}
+
+TEST(RsiLoop, EndsWithTheProgramsSetting) {
+  SimulatedController controller{rsi_controller_protocol(), {}, 0.004, 4};
+  AdapterLoop loop{rsi_protocol(), rsi_session(), controller};
+  loop.run(10);
+  loop.hold(speed_correction(7380.0, 0.868), 300);
+  loop.adapter.end();
+  EXPECT_STREQ(loop.say(speed_correction(7380.0, 0.868))->reason.data(), "the adapter ends");
+  loop.run(1);
+  EXPECT_LT(controller.inputs().spindle_change_rpm, -1000.0);  // not at one blow
+  loop.run(1000);
+  EXPECT_EQ(controller.inputs().spindle_change_rpm, 0.0);
+  EXPECT_EQ(controller.inputs().feed_override, 1.0);
+}
+
 TEST(RsiLoop, TellsFeedDirectionRateAndBlockAsTheToolMoves) {
   SimulatedController controller{rsi_controller_protocol(), {}, 0.004, 4};
   AdapterLoop loop{rsi_protocol(), rsi_session(), controller};
