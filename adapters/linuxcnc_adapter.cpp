@@ -152,7 +152,7 @@ bool LinuxCncAdapter::take_value(std::string_view name, std::string_view text) {
     }
     return true;
   }
-  const auto number = cnc_number(values.back());  // the spindle's number goes before its override since 2.8
+  const auto number = cnc_number(values.back());  // newer versions put the spindle's number before its override
   if (!number || !(*number >= 0.0)) return false;
   if (name == "PROGRAM_LINE") {
     if (*number > kLastLine) return false;

@@ -1,7 +1,8 @@
 // The line protocol of linuxcncrsh, the network interface of LinuxCNC: what its replies say.
 //
 // A command a line; GET X is answered by "X values", SET X by "SET X ACK" (in verbose mode), both by "... NAK", or by
-// "error: ..." since 2.9, where they are refused. Lines end in \r\n or \n\r. Overrides are set in whole per cent.
+// "error: ..." of newer versions, where they are refused. Lines end in \r\n or \n\r. Overrides are set in whole per
+// cent.
 #pragma once
 
 #include <array>

@@ -9,6 +9,11 @@
 #include "drivers/lcm/subscriber.hpp"
 #include "tests/adapters/correction_messages.hpp"
 
+// For the thread sanitizer: what LCM and GLib do among themselves, as in tests/drivers/lcm/publish_subscribe_test.cpp.
+extern "C" const char* __tsan_default_suppressions() {
+  return "called_from_lib:liblcm.so\ncalled_from_lib:libglib-2.0.so\n";
+}
+
 namespace stillcut {
 namespace {
 
