@@ -37,10 +37,12 @@ bool lies_within(double value, double min, double max) {  // false for NaN
 
 }  // namespace
 
-// The sequence is the monitor's from its start on: a lower one is an old message, or the first ones of a monitor that
-// was started again. The latter is believed only when nothing of the former is in force any more.
-bool CorrectionFollower::is_new(const Correction& correction) const {
+// The sequence is the monitor's from its start on: a lower one is an old message, or among the first ones of a monitor
+// that was started again. The latter is believed only when nothing of the former is in force any more, and its clock
+// has gone on or nothing was heard for long.
+bool CorrectionFollower::is_new(const Correction& correction, std::int64_t now_ns) const {
   if (!heard_ || correction.sequence > sequence_) return true;
+  if (static_cast<double>(now_ns - heard_ns_) * 1e-9 > kForgetClock_s) return true;
   return correction.sequence < sequence_ && !correction_ && correction.stamp_ns > stamp_ns_;
 }
 
@@ -60,7 +62,7 @@ std::optional<Answer> CorrectionFollower::receive(const Correction& correction, 
     ++counters_.shadow;
     return std::nullopt;
   }
-  if (correction.sequence < 0 || !is_new(correction)) {
+  if (correction.sequence < 0 || !is_new(correction, now_ns)) {
     ++counters_.old;
     return std::nullopt;
   }

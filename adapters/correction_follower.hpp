@@ -83,7 +83,7 @@ class CorrectionFollower {
   [[nodiscard]] const FollowerCounters& counters() const { return counters_; }
 
  private:
-  [[nodiscard]] bool is_new(const Correction& correction) const;
+  [[nodiscard]] bool is_new(const Correction& correction, std::int64_t now_ns) const;
   double age_s(const Correction& correction, std::int64_t now_ns);
   [[nodiscard]] ShortText reason_to_refuse(const Correction& correction, double age) const;
   [[nodiscard]] ShortText reason_against_speed(const Correction& correction) const;

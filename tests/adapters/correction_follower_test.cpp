@@ -91,6 +91,14 @@ TEST(CorrectionFollower, BelievesAMonitorThatWasStartedAgainOnceTheOldCorrection
   EXPECT_EQ(cell.refused(cell.next(speed_correction(7000.0, 0.8))), "not answered");
   cell.run(130);
   EXPECT_EQ(cell.refused(cell.next(speed_correction(7000.0, 0.8))), "accepted");
+
+  Correction astray = cell.next(speed_correction(7000.0, 0.8));  // the end of all numbers, and of time
+  astray.sequence = std::numeric_limits<std::int64_t>::max();
+  astray.stamp_ns = std::numeric_limits<std::int64_t>::max();
+  EXPECT_NE(cell.refused(astray), "not answered");
+  EXPECT_EQ(cell.refused(cell.next(speed_correction(7000.0, 0.8))), "not answered");
+  cell.run(2501);  // ten seconds of nothing
+  EXPECT_EQ(cell.refused(cell.next(speed_correction(7000.0, 0.8))), "accepted");
 }
 
 TEST(CorrectionFollower, VariesTheSpeedAroundItsMean) {
