@@ -16,9 +16,7 @@ namespace {
 
 constexpr int kWait_ms = 20;
 constexpr int kPriority = 60;  // SCHED_FIFO; below the monitor's loop
-constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
 constexpr std::int64_t kPeerForgotten_ns = 1'000'000'000;
-constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;
 
 // The one controller that is served: the first to speak, until it has been silent for a second.
 class ServedPeer {

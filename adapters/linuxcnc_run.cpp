@@ -17,8 +17,6 @@ namespace {
 
 constexpr int kConnectWithin_ms = 1000;
 constexpr int kWaitForLine_ms = 5;
-constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
-constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;
 constexpr std::chrono::milliseconds kConnectAgain{500};
 
 class LinuxCncLoop {
