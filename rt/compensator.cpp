@@ -10,16 +10,17 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 300'000'000;
+constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000;
 constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
 constexpr std::int64_t kPatience_ns =
     6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
+constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
 constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
 constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
-constexpr std::int64_t kSaturatedStops_ns = 300'000'000;
+constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
@@ -58,13 +59,11 @@ void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
 
 // Why nothing may be asked of the controller now; nullptr when all conditions hold.
 const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
-  // A sensor that is driven beyond its range by the very chatter that is being corrected: the move goes on to its end.
-  const bool loud = in.monitor->doubts == kSaturated && phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !loud) return "the monitor cannot tell";
+  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !deafened(in)) return "the monitor cannot tell";
   if (settings_.mode != RuntimeMode::active) return nullptr;
   if (!in.controller_alive) return "controller silent";
   if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
-  if (!in.monitor->chatter && !in.monitor->structural && !correcting()) refused_ = false;  // a new question
+  if (!is_heard(in) && !correcting()) refused_ = false;  // a new question
   return refused_ ? "controller refused or did not answer" : nullptr;
 }
 
@@ -72,8 +71,10 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
   const State state = in.monitor->state;
   run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
-  if (stop_for_saturation(in, out)) return;
+  run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && air_since_ns_ == 0, in.now_ns);
   if (const char* reason = reason_to_hold_back(in)) {
+    // Where the sensor is beyond its range at the new setting as well, that is no second time the answer.
+    if (correcting() && in.monitor->doubts == kSaturated) attempts_.add(candidate_, in.axial_depth);
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
     chatter_since_ns_ = quiet_since_ns_ = 0;
@@ -81,7 +82,7 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
     return;
   }
   held_back_ = false;
-  const bool chatter = in.monitor->chatter || in.monitor->structural;
+  const bool chatter = is_heard(in);
   run_watch(chatter_since_ns_, chatter, in.now_ns);
   run_watch(quiet_since_ns_, !chatter, in.now_ns);
   if (phase_ == Phase::stopped) {
@@ -138,9 +139,10 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
 // or an echo of it: both are the success that was asked for.
 bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
   const MonitorView& heard = *in.monitor;
-  if (!tool_chatters(in) || !heard.single_line || candidate_.kind == CorrectionKind::stop_request) return false;
+  if (!heard.chatter || !tool_chatters(in) || !heard.single_line || candidate_.kind == CorrectionKind::stop_request)
+    return false;
   const double amplitude = heard.chatter_amplitude;
-  if (amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
+  if (amplitude > 0.0 && amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
     tolerated_ = std::max(tolerated_, amplitude);
     phase_ = Phase::holding;
     return true;
@@ -162,28 +164,13 @@ void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out)
   if (next.kind != CorrectionKind::release && (other_kind || other_speed)) start(in, next, out);
 }
 
-// A sensor that a cut drives beyond its range cannot be listened to. Where that cut is predicted to chatter the tool is
-// in danger; to stop is then the only thing that can be said.
-bool Compensator::stop_for_saturation(const CompensatorInputs& in, OutputQueue& out) noexcept {
-  const bool in_air = air_since_ns_ != 0;
-  run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && !in_air, in.now_ns);
-  const bool may = settings_.limits.may_stop && !refused_ && phase_ != Phase::stopped &&
-                   !attempts_.refused(CorrectionKind::stop_request) &&
-                   (settings_.mode == RuntimeMode::shadow || in.controller_alive);
-  const bool acts = phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  if (!may || acts || !has_run(saturated_since_ns_, in.now_ns, kSaturatedStops_ns)) return false;
-  Candidate stop;
-  stop.kind = CorrectionKind::stop_request;
-  stop.margin_before = stop.margin_after = margin_at(prediction(in), in.monitor->speed);
-  if (!(stop.margin_before < 0.0)) return false;
-  stop.setting = programmed(in);
-  stop.setting.feed_factor = 0.0;
-  stop.limited_by = kNoStableSettingKnown;
-  stop.confidence_percent = 50;
-  held_back_ = false;
-  start(in, stop, out);
-  publish(in, out);
-  return true;
+// A sensor that a cut drives beyond its range cannot be listened to. Where chatter is predicted, or was heard and is
+// being corrected, there is no doubt about what drives it: it is chatter without a line.
+bool Compensator::deafened(const CompensatorInputs& in) const noexcept {
+  if (in.monitor->doubts != kSaturated || air_since_ns_ != 0) return false;
+  const bool corrects = phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  return corrects || (has_run(saturated_since_ns_, in.now_ns, kSaturatedIsChatter_ns) &&
+                      margin_at(coming_prediction(in), in.monitor->speed) < 0.0);
 }
 
 // A stop is asked for until the tool is out of the part, or the controller does not take it.
@@ -210,7 +197,7 @@ CutSetting Compensator::programmed(const CompensatorInputs& in) const noexcept {
 }
 
 Prediction Compensator::prediction(const CompensatorInputs& in) const noexcept {
-  return {in.lobes, in.lobes_ahead, in.axial_depth, frequency_scale_};
+  return {in.lobes, in.lobes_ahead, in.axial_depth};
 }
 
 // For the depth that the cut is on its way to: a pocket that is left again by the deeper cut is none.
@@ -239,16 +226,14 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
   s.chatter_frequency_hz = frequency_of_chatter(in);
   s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
-  s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, kPatience_ns);
+  const std::int64_t patience_ns = in.monitor->doubts == kNoDoubt ? kPatience_ns : kPatienceDeaf_ns;
+  s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, patience_ns);
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
   s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
   s.present.speed = heard.speed;
   s.prediction = coming_prediction(in);
-  // The lobes lie where they are heard, as long as the program's own speed is the one that is heard.
-  if (!correcting() && !s.structural && in.lobes != nullptr)
-    s.prediction.frequency_scale = heard_frequency_scale(*in.lobes, heard.speed, s.chatter_frequency_hz);
   s.remembered = memory_.recall(place(in));
   return s;
 }
@@ -265,6 +250,7 @@ double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noex
 // kind may be forced, and a burst be that of an entry.
 bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
   const MonitorView& heard = *in.monitor;
+  if (deafened(in)) return true;
   if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
   const Prediction coming = coming_prediction(in);
   if (margin_at(coming, heard.speed) < 0.0) return true;

@@ -57,7 +57,6 @@ class Compensator {
   void hear_chatter(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void hear_nothing(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept;
-  bool stop_for_saturation(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void start(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
   void begin_motion(const CompensatorInputs& in) noexcept;
@@ -73,6 +72,10 @@ class Compensator {
   [[nodiscard]] CutPlace place(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutSetting programmed(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double frequency_of_chatter(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool deafened(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool is_heard(const CompensatorInputs& in) const noexcept {
+    return in.monitor->chatter || in.monitor->structural || deafened(in);
+  }
   [[nodiscard]] bool tool_chatters(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool structure_chatters(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] Prediction coming_prediction(const CompensatorInputs& in) const noexcept;
@@ -102,7 +105,7 @@ class Compensator {
   double loudest_ = 0.0;            // m/s^2, of this chatter
   double checked_ = 0.0;            // when its effect was last looked at
   double tolerated_ = 0.0;          // what is left of it and stays; 0: nothing was left
-  double chatter_frequency_hz_ = 0.0, frequency_scale_ = 1.0;
+  double chatter_frequency_hz_ = 0.0;
   double chatter_depth_ = 0.0, chatter_margin_ = 0.0;  // m; predicted at the programmed speed when it was heard
 };
 

@@ -51,7 +51,6 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
     begin_motion(in);
     loudest_ = tolerated_ = 0.0;
     answered_ns_ = in.now_ns;
-    frequency_scale_ = now.prediction.frequency_scale;
     chatter_depth_ = in.axial_depth;
     chatter_margin_ = margin_at(now.prediction, programmed_.speed);
   }
@@ -143,7 +142,6 @@ void Compensator::release(const CompensatorInputs& in, const char* reason, Outpu
   out.put(c);
   phase_ = Phase::none;
   candidate_ = {};
-  frequency_scale_ = 1.0;
 }
 
 }  // namespace stillcut

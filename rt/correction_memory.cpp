@@ -41,7 +41,8 @@ void CorrectionMemory::keep(const Remembered& worked) noexcept {
 }
 
 void CorrectionMemory::forget(const CutPlace& place) noexcept {
-  if (const std::size_t i = find(place); i < count_) places_[i].place.programmed_speed = 0.0;  // is found no more
+  // Places run into one another, so several may be near; one without a speed is found no more.
+  for (std::size_t i = find(place); i < count_; i = find(place)) places_[i].place.programmed_speed = 0.0;
 }
 
 const Remembered* CorrectionMemory::recall(const CutPlace& place) const noexcept {

@@ -23,14 +23,19 @@ void SettingMotion::begin(const CutSetting& start) noexcept {
 bool SettingMotion::move_to(const CutSetting& target, double t, const CompensationLimits& limits,
                             double pace) noexcept {
   const double in = t - started_;
+  // What is under way is slowed as hard as the limits allow: gently it would run past where it was going, which may be
+  // the end of the spindle's range or of the path's freedom.
+  const double slowing = in < longest_ ? 1.0 : pace;
+  const SpindleLimits& spindle = limits.spindle;
   const VelocityPlan speed =
-      plan_velocity(speed_.at(in), target.speed, 0.0, {pace * limits.spindle.acceleration, pace * limits.spindle.jerk});
-  const double feed_rate = pace * limits.feed_override_rate;
-  const VelocityPlan feed = plan_velocity(feed_.at(in), target.feed_factor, 0.0, {feed_rate, feed_rate / kRampUp_s});
-  const double turn = pace * limits.turn_rate, turn_acceleration = turn / kRampUp_s;
+      plan_velocity(speed_.at(in), target.speed, 0.0, {pace * spindle.acceleration, slowing * spindle.jerk});
+  const double feed_rate = limits.feed_override_rate;
+  const VelocityPlan feed =
+      plan_velocity(feed_.at(in), target.feed_factor, 0.0, {pace * feed_rate, slowing * feed_rate / kRampUp_s});
+  const double turn_acceleration = slowing * limits.turn_rate / kRampUp_s;
   const PositionPlan direction =
       plan_position(direction_.at(in), {target.feed_direction, 0.0, 0.0},
-                    symmetric_limits(turn, turn_acceleration, turn_acceleration / kRampUp_s));
+                    symmetric_limits(pace * limits.turn_rate, turn_acceleration, turn_acceleration / kRampUp_s));
   if (speed.error != TrajectoryError::none || feed.error != TrajectoryError::none ||
       direction.error != TrajectoryError::none)
     return false;

@@ -27,8 +27,8 @@ class SettingMotion {
   // From rest at `start`.
   void begin(const CutSetting& start) noexcept;
   // On to `target` from where it stands at time `t` (s since begin, never going back). `pace` scales the limits of
-  // rate, acceleration and jerk: 1 backs off as fast as they allow, less returns gently. False: there is no such move,
-  // and the old one goes on.
+  // rate, acceleration and jerk: 1 backs off as fast as they allow, less returns gently, once what is under way has
+  // been slowed. False: there is no such move, and the old one goes on.
   bool move_to(const CutSetting& target, double t, const CompensationLimits& limits, double pace) noexcept;
 
   // The variation sets in when its mean is reached.

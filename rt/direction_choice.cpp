@@ -24,9 +24,10 @@ double depth_limit_towards(const LobeDiagram& diagram, double direction) noexcep
     const double depth = diagram.directions[static_cast<std::size_t>(i % count)].depth_limit;
     return std::isnan(depth) ? 0.0 : depth;
   };
+  constexpr double kOnPoint = 1e-6;  // of a spacing: at a direction that is known its own limit holds
+  const double nearest = std::round(place);
+  if (std::abs(place - nearest) < kOnPoint) return limit(static_cast<int>(nearest));
   const int below = static_cast<int>(place);
-  constexpr double kOnPoint = 1e-6;
-  if (place - below < kOnPoint) return limit(below);
   return std::min(limit(below), limit(below + 1));
 }
 

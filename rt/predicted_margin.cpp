@@ -12,12 +12,11 @@ namespace {
 constexpr double kSpeedKnown = 0.01;      // of f_c and of the spindle's speed: no pocket is entered more exactly
 constexpr double kSameFrequency = 0.02;   // the chatter frequency moves so much between the limit and deep chatter
 constexpr double kOtherFrequency = 0.06;  // beyond it the heard frequency is of another mode
-constexpr double kScaleMax = 0.06;
 constexpr double kAboutAMode = 0.25;
 constexpr double kSidebandFound = 0.03;  // nearer than this to the prediction: its sideband
 
-double scaled_margin(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
-  return diagram == nullptr ? kNaN : margin_at(*diagram, speed / p.frequency_scale, p.axial_depth);
+double margin_of(const Prediction& p, const LobeDiagram* diagram, double speed) noexcept {
+  return diagram == nullptr ? kNaN : margin_at(*diagram, speed, p.axial_depth);
 }
 
 double worse(double a, double b) noexcept { return std::isnan(a) ? b : std::isnan(b) ? a : std::min(a, b); }
@@ -27,11 +26,11 @@ double worse(double a, double b) noexcept { return std::isnan(a) ? b : std::isna
 double least_margin(const Prediction& p, const LobeDiagram* diagram, double low, double high) noexcept {
   if (diagram == nullptr || !diagram->valid || diagram->point_count < 2) return kNaN;
   const auto last = static_cast<std::size_t>(std::min(diagram->point_count, LobeDiagram::kMaxPoints)) - 1;
-  const double first_speed = diagram->points[0].speed * p.frequency_scale;
-  const double last_speed = diagram->points[last].speed * p.frequency_scale;
+  const double first_speed = diagram->points[0].speed;
+  const double last_speed = diagram->points[last].speed;
   const double from = std::max(low, first_speed), to = std::min(high, last_speed);
   if (!(from <= to && last_speed > first_speed)) return kNaN;
-  const double at_ends = worse(scaled_margin(p, diagram, from), scaled_margin(p, diagram, to));
+  const double at_ends = worse(margin_of(p, diagram, from), margin_of(p, diagram, to));
   const double places = static_cast<double>(last) / (last_speed - first_speed);
   const auto first_inside = static_cast<std::size_t>(std::ceil((from - first_speed) * places));
   const auto last_inside = std::min(static_cast<std::size_t>((to - first_speed) * places), last);
@@ -59,26 +58,18 @@ double predicted_frequency(const LobeDiagram& diagram, double speed) noexcept {
 }  // namespace
 
 double margin_at(const Prediction& p, double speed) noexcept {
-  return worse(scaled_margin(p, p.here, speed), scaled_margin(p, p.ahead, speed));
+  return worse(margin_of(p, p.here, speed), margin_of(p, p.ahead, speed));
 }
 
 double safe_margin_at(const Prediction& p, double speed) noexcept {
   double least = kNaN;
   for (const LobeDiagram* diagram : {p.here, p.ahead}) {
     if (diagram == nullptr) continue;
-    // A scale learnt from what is heard says where the lobes lie better than the map does.
-    const double scatter = p.frequency_scale == 1.0 ? diagram->speed_scatter : 0.0;
-    const double reach = kSpeedKnown + scatter;
+    const double reach = kSpeedKnown + diagram->speed_scatter;
     const double nominal = least_margin(p, diagram, speed * (1.0 - reach), speed * (1.0 + reach));
     least = worse(least, (1.0 + nominal) * (1.0 - diagram->depth_scatter) - 1.0);
   }
   return least;
-}
-
-double heard_frequency_scale(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {
-  const double scale = heard_hz / predicted_frequency(diagram, speed);
-  const double off = std::abs(scale - 1.0);
-  return off > kSameFrequency && off < kScaleMax ? scale : 1.0;
 }
 
 double base_frequency(const LobeDiagram& diagram, double speed, int teeth, double heard_hz) noexcept {

@@ -9,12 +9,11 @@
 
 namespace stillcut {
 
-// What is predicted, and what hearing the chatter has taught about it.
+// What is predicted.
 struct Prediction {
   const LobeDiagram* here = nullptr;   // of the present posture; nullptr: none to be trusted
   const LobeDiagram* ahead = nullptr;  // the least limits along the announced path; nullptr: none announced
   double axial_depth = 0.0;            // m; NaN unknown
-  double frequency_scale = 1.0;        // heard over predicted chatter frequency: the lobes lie at speeds so much higher
 };
 
 // At a spindle speed, rad/s.
@@ -24,10 +23,6 @@ struct Prediction {
 // speeds at which the lobes lie, with limits that are lower by their own scatter. At the ends of the diagram only what
 // lies inside counts.
 [[nodiscard]] double safe_margin_at(const Prediction& prediction, double speed) noexcept;
-
-// Heard over predicted chatter frequency at this speed, where the two differ by more than the depth beyond the limit
-// explains and by less than another mode would; 1 otherwise, or where nothing is predicted.
-[[nodiscard]] double heard_frequency_scale(const LobeDiagram& diagram, double speed, double heard_hz) noexcept;
 
 // The frequency of the chatter itself where what is heard may be one of its sidebands, f_c + j N n/60: the one nearest
 // to what is predicted at this speed (rad/s), if it comes near; otherwise as heard.

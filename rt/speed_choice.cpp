@@ -19,8 +19,9 @@ constexpr double kHighestLobe = 1e6;     // beyond it speeds and frequency do no
 constexpr int kMostLobes = 64;           // bounds the work; so high up the lobes run into one another
 constexpr double kLeastGain = 0.1;       // of margin: what is only better must be better by this
 constexpr double kAway = 2.3;            // natural logarithm of the tenth to which the vibration has to fall
-constexpr double kUsualDamping = 0.02, kUsualFrequency_hz = 500.0;  // of what vibrates, where nothing is known
-constexpr double kLeastSafeMargin = 0.02, kMostSafeMargin = 1.0;    // beyond these an estimate of decay says nothing
+constexpr double kLeastDamping = 1e-4, kUsualDamping = 0.02,
+                 kUsualFrequency_hz = 500.0;                      // of what vibrates, where nothing is known
+constexpr double kLeastSafeMargin = 0.02, kMostSafeMargin = 1.0;  // beyond these an estimate of decay says nothing
 
 struct Candidate {
   double target = 0.0;
@@ -52,7 +53,7 @@ double decay_time(const SpeedQuestion& q, double safe_margin) noexcept {
   const double margin = std::isnan(safe_margin) ? kLeastSafeMargin : safe_margin;
   const double m = std::clamp(margin, kLeastSafeMargin, kMostSafeMargin);
   const double frequency_hz = q.vibration_hz > 0.0 ? q.vibration_hz : kUsualFrequency_hz;
-  const double damping = damping_of(q.prediction.here, frequency_hz);
+  const double damping = std::max(damping_of(q.prediction.here, frequency_hz), kLeastDamping);
   return kAway / (damping * kTwoPi * frequency_hz * m / (1.0 + m));
 }
 
@@ -180,7 +181,7 @@ SpeedChoice choose_speed(const SpeedQuestion& q, const CompensationLimits& limit
     consider_lobes(q, limits, search);
     if (const LobeDiagram* lobes = q.prediction.here; lobes != nullptr && lobes->valid)
       for (int i = 0; i < std::min(lobes->point_count, LobeDiagram::kMaxPoints); ++i)
-        search.consider({lobes->points[static_cast<std::size_t>(i)].speed * q.prediction.frequency_scale, 0});
+        search.consider({lobes->points[static_cast<std::size_t>(i)].speed, 0});
   }
   return search.finish();
 }

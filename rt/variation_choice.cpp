@@ -21,9 +21,10 @@ double left_of_swing(double frequency_hz, double time_constant_s) noexcept {
   return 1.0 / std::sqrt(1.0 + turn * turn);
 }
 
+// Where it turns, a swing stays a while: in no dead zone, as about no mean that lies in one.
 bool fits(const CompensationLimits& limits, double programmed_speed, double mean, double ratio) noexcept {
   const double low = mean * (1.0 - ratio), high = mean * (1.0 + ratio);
-  return low >= limits.spindle.min_speed && high <= limits.spindle.max_speed &&
+  return may_stay_at(limits, low) && may_stay_at(limits, mean) && may_stay_at(limits, high) &&
          keeps_feed_per_tooth(limits, low, programmed_speed) && keeps_feed_per_tooth(limits, high, programmed_speed);
 }
 
@@ -63,7 +64,9 @@ VariationChoice choose_variation(const VariationQuestion& q, const CompensationL
   };
   if (!predicted) {
     const double ratio = std::min(kUnpredictedRatio, limits.max_variation);
-    const double lowest = limits.spindle.min_speed / (1.0 - ratio), highest = limits.spindle.max_speed / (1.0 + ratio);
+    constexpr double kInside = 1e-12;  // of rounding
+    const double lowest = limits.spindle.min_speed * (1.0 + kInside) / (1.0 - ratio);
+    const double highest = limits.spindle.max_speed * (1.0 - kInside) / (1.0 + ratio);
     if (ratio > 0.0 && lowest <= highest) consider(std::clamp(q.speed, lowest, highest), ratio);
     return best;
   }

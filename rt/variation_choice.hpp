@@ -22,7 +22,8 @@ struct VariationChoice {
   double margin_after = 0.0;  // of the swing; NaN unknown
 };
 
-// The swing with the largest predicted margin inside the spindle's range, acceleration and jerk, and the tool's window.
+// The swing with the largest predicted margin inside the spindle's range, acceleration and jerk and the tool's window;
+// neither its mean nor its turning points lie in a dead zone.
 //
 // The swing is slow beside the growth of chatter, so that vibration grows and decays with the present speed, and what
 // counts is the mean over a swing. Growth is nearly proportional to a/a_lim - 1 on both sides of the limit, so a swing

@@ -61,7 +61,8 @@ class ChoiceCases {
                                                std::isfinite(limit) ? frequency_hz : kNaN};
     }
     d.mode_count = whole(0, 4);
-    for (int m = 0; m < d.mode_count; ++m) d.modes[static_cast<std::size_t>(m)].frequency_hz = between(20, 2000);
+    for (int m = 0; m < d.mode_count; ++m)
+      d.modes[static_cast<std::size_t>(m)] = {between(20, 2000), between(0.005, 0.1)};
     if (chance(0.5)) d.speed_scatter = between(0.0, 0.04), d.depth_scatter = between(0.0, 0.4);
     d.direction_count = whole(0, LobeDiagram::kMaxDirections);
     d.direction_speed = between(spindle.min_speed, spindle.max_speed);
@@ -79,11 +80,9 @@ class ChoiceCases {
 // Diagrams that a prediction points to, kept with it.
 struct KeptPrediction {
   std::optional<LobeDiagram> here, ahead;
-  double axial_depth = 1e-3, frequency_scale = 1.0;
+  double axial_depth = 1e-3;
 
-  [[nodiscard]] Prediction view() const {
-    return {here ? &*here : nullptr, ahead ? &*ahead : nullptr, axial_depth, frequency_scale};
-  }
+  [[nodiscard]] Prediction view() const { return {here ? &*here : nullptr, ahead ? &*ahead : nullptr, axial_depth}; }
 };
 
 inline KeptPrediction random_prediction(ChoiceCases& cases, const SpindleLimits& spindle) {
@@ -91,7 +90,6 @@ inline KeptPrediction random_prediction(ChoiceCases& cases, const SpindleLimits&
   if (cases.chance(0.8)) p.here = cases.diagram(spindle);
   if (cases.chance(0.3)) p.ahead = cases.diagram(spindle);
   if (cases.chance(0.1)) p.axial_depth = kNaN;
-  if (cases.chance(0.3)) p.frequency_scale = cases.between(0.94, 1.06);
   return p;
 }
 

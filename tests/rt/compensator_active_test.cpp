@@ -107,9 +107,10 @@ TEST(Compensator, ActiveTriesSpeedsThenVariationThenFeedThenAsksForAStop) {
   EXPECT_NEAR(targets[0], 7380.0, 1e-6);
   EXPECT_NEAR(targets[1], 11070.0, 1e-6);
   using Kind = CorrectionKind;
-  EXPECT_EQ(asked_for(bench), (std::vector<Kind>{Kind::spindle_speed, Kind::spindle_speed, Kind::speed_variation,
-                                                 Kind::feed_override, Kind::stop_request}));
-  EXPECT_EQ(bench.events.size(), 5U);
+  // The variation needs two slow swings to show; then patience is out.
+  EXPECT_EQ(asked_for(bench),
+            (std::vector<Kind>{Kind::spindle_speed, Kind::spindle_speed, Kind::speed_variation, Kind::stop_request}));
+  EXPECT_EQ(bench.events.size(), 4U);
   EXPECT_TRUE(std::isnan(bench.events.back().spindle_speed_rpm));
   const Correction& last = bench.corrections.back();
   EXPECT_NE(last.limited_by & kNoStableSettingKnown, 0);
@@ -121,14 +122,13 @@ TEST(Compensator, EveryCandidateHasTheTimeOfItsMoveAndOfTheSpindleToAct) {
   Bench bench{RuntimeMode::active};
   bench.in.controller_alive = true;
   run_following(bench, 20.0);
-  ASSERT_EQ(bench.events.size(), 5U);
+  ASSERT_EQ(bench.events.size(), 4U);
   const auto between_s = [&](std::size_t i) {
     return static_cast<double>(bench.events[i + 1].stamp_ns - bench.events[i].stamp_ns) * 1e-9;
   };
   EXPECT_GT(between_s(0), 1620.0 / 3000.0 + 4 * 0.05);  // 9000 to 7380 rpm at 3000 rpm/s, and four time constants
   EXPECT_GT(between_s(1), 3690.0 / 3000.0 + 4 * 0.05);
   EXPECT_GT(between_s(2), 1.0);  // two swings, at most 2 Hz
-  EXPECT_GT(between_s(3), 0.5);  // from full to half the feed, 1 a second
 }
 
 TEST(Compensator, AStopIsAskedForUntilTheToolIsOutOfThePart) {
@@ -196,23 +196,28 @@ TEST(Compensator, WhereEverySpeedIsPredictedWorseNoneIsAsked) {
   }
 }
 
-// A sensor driven beyond its range by a cut that is predicted to chatter: all that can be said is to stop. One that
-// fails in a sound cut is no reason.
-TEST(Compensator, SaturationAsksForAStopOnlyInACutPredictedUnstable) {
-  for (const double limit_mm : {0.5, 2.0, kNaN}) {
+// A sensor driven beyond its range by a cut that is predicted to chatter: to the pocket that the lobes know, and where
+// it goes on there or none is known, a stop. One that fails in a sound cut, or where nothing is predicted, is no
+// reason.
+TEST(Compensator, SaturationIsChatterWhereChatterIsPredicted) {
+  using Kind = CorrectionKind;
+  const auto asked_with = [](double limit_mm, double pocket_mm) {
     Bench bench{RuntimeMode::active};
     bench.in.controller_alive = true;
-    const LobeDiagram lobes = diagram_of(std::vector<double>(7, limit_mm), spindle_6000_to_12000());
+    std::vector<double> limits_mm(61, limit_mm);
+    for (std::size_t i = 20; i < 25; ++i) limits_mm[i] = pocket_mm;
+    const LobeDiagram lobes = diagram_of(limits_mm, spindle_6000_to_12000());
     bench.in.lobes = std::isnan(limit_mm) ? nullptr : &lobes;
     MonitorView saturated = quiet(0, State::cannot_tell);
     saturated.doubts = kSaturated;
-    bench.run_acknowledged(0.2, saturated);
-    ASSERT_EQ(bench.corrections.size(), 1U);
-    EXPECT_EQ(bench.corrections[0].kind, CorrectionKind::release);
-    bench.run_acknowledged(1.0, saturated);
-    const bool stops = bench.corrections.back().kind == CorrectionKind::stop_request;
-    EXPECT_EQ(stops, limit_mm == 0.5) << limit_mm;
-  }
+    bench.run_acknowledged(12.0, saturated);
+    return asked_for(bench);
+  };
+  EXPECT_EQ(asked_with(0.5, 3.0).at(1), Kind::spindle_speed);
+  EXPECT_EQ(asked_with(0.5, 3.0).back(), Kind::stop_request);
+  EXPECT_EQ(asked_with(0.5, 0.5).back(), Kind::stop_request);
+  EXPECT_EQ(asked_with(2.0, 2.0), (std::vector<Kind>{Kind::release}));
+  EXPECT_EQ(asked_with(kNaN, kNaN), (std::vector<Kind>{Kind::release}));
 }
 
 TEST(Compensator, WhatWorkedAtAPostureIsTheFirstAnswerThereTheNextTime) {
@@ -260,6 +265,8 @@ TEST(Compensator, ReturnsSlowlyWhenTheReasonIsGoneAndNotASecondTimeInVain) {
     bench.run_acknowledged(4.0, quiet(0, State::cut, target));
     EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);  // the reason is still there
     bench.in.axial_depth = 0.5e-3;
+    bench.run_acknowledged(0.9, quiet(0, State::cut, target));
+    EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);  // the way out of the part is no reason
     bench.run_acknowledged(1.0, quiet(0, State::cut, target));
     ASSERT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
     EXPECT_NEAR(bench.corrections.back().spindle_speed_target_rpm, 9000.0, 1e-6);
@@ -271,7 +278,8 @@ TEST(Compensator, ReturnsSlowlyWhenTheReasonIsGoneAndNotASecondTimeInVain) {
       EXPECT_EQ(bench.releases(), 1);
       continue;
     }
-    bench.run_acknowledged(0.5, chattering(0));
+    // Stable by the prediction: it has to last a second before it is answered.
+    bench.run_acknowledged(1.3, chattering(0));
     EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
     bench.run_acknowledged(20.0, quiet(0, State::cut, target));
     EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
@@ -389,7 +397,7 @@ TEST(Compensator, NothingUnsafeIsEverPublished) {
         }
         ++asked;
         // A stop once asked for is not taken back because the monitor goes deaf.
-        ASSERT_TRUE(view.doubts == kNoDoubt || said.kind == CorrectionKind::stop_request);
+        ASSERT_TRUE(view.doubts == kNoDoubt || view.doubts == kSaturated || said.kind == CorrectionKind::stop_request);
         ASSERT_TRUE(seed % 2 == 0 || bench.in.controller_alive);
         ASSERT_GE(said.spindle_speed_rpm, min_rpm * (1.0 - 1e-12));
         ASSERT_LE(said.spindle_speed_rpm, max_rpm * (1.0 + 1e-12));

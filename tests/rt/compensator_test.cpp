@@ -121,6 +121,7 @@ TEST(Compensator, ShadowFollowsTheFrequencyOnlyWhenItDrifts) {
 TEST(Compensator, AnyDoubtReleasesOnceAndSilencesUntilItClears) {
   for (const RuntimeMode mode : {RuntimeMode::shadow, RuntimeMode::active}) {
     for (int bit = 0; bit < kDoubtCount; ++bit) {
+      if (1U << bit == kSaturated) continue;  // chatter may be what saturates: below
       Bench bench{mode};
       bench.in.controller_alive = true;
       bench.run_acknowledged(0.5, chattering(0));
@@ -137,6 +138,21 @@ TEST(Compensator, AnyDoubtReleasesOnceAndSilencesUntilItClears) {
       EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
     }
   }
+}
+
+// The chatter that is being corrected drives the sensor beyond its range: the move goes on to its end, and no further.
+TEST(Compensator, SaturationByTheChatterThatIsCorrectedEndsTheCorrectionOnlyAfterItsTime) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  bench.run_acknowledged(0.2, chattering(0));
+  MonitorView saturated = quiet(0, State::cannot_tell);
+  saturated.doubts = kSaturated;
+  bench.run_acknowledged(0.3, saturated);
+  EXPECT_TRUE(bench.compensator().correcting());
+  EXPECT_EQ(bench.releases(), 0);
+  bench.run_acknowledged(2.0, saturated);
+  EXPECT_FALSE(bench.compensator().correcting());
+  EXPECT_EQ(bench.releases(), 1);
 }
 
 TEST(Compensator, AnUnknownKindWaitsAndAFadingLineIsLeftAlone) {

@@ -12,8 +12,10 @@ namespace stillcut {
 namespace {
 
 TEST(Core, ChatterBecomesOneOnsetAndACorrectionInStep) {
-  Heard heard{settings_of(chattering_cut())};
-  heard.play(record(chattering_cut()));
+  SyntheticCut cut = chattering_cut();
+  cut.duration_s = 3.5;  // a second of air ends the cut
+  Heard heard{settings_of(cut)};
+  heard.play(record(cut));
   const std::vector<Event> onsets = only(heard.events, EventType::chatter_onset);
   ASSERT_EQ(onsets.size(), 1U);
   EXPECT_NEAR(onsets[0].frequency_hz, 717.0, 3.0);
@@ -151,6 +153,70 @@ TEST(Core, LobesOfAnotherPostureCountAsNone) {
   heard.frame(kStart + 10 * kSecond);
   EXPECT_TRUE(std::isnan(heard.statuses.back().margin));
   EXPECT_EQ(heard.statuses.back().lobes_stamp_ns, 0);
+}
+
+LobeDiagram along_the_path(std::int64_t usable_from_ns, std::int64_t usable_until_ns, double limit_mm) {
+  LobeDiagram diagram = dated(usable_from_ns, 0, limit_mm);
+  diagram.ahead = true;
+  diagram.usable_until_ns = usable_until_ns;
+  return diagram;
+}
+
+TEST(Core, ADiagramOfTheAnnouncedPathIsUsedUntilThatIsTravelledAndBesideThePresentOne) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.core.add_lobes(dated(0, 0, 2.0));
+  heard.frame(kStart);
+  heard.core.add_lobes(along_the_path(kStart + kSecond, kStart + 3 * kSecond, 0.5));
+  heard.frame(kStart + kSecond - 1);
+  EXPECT_EQ(heard.core.lobes_ahead(), nullptr);
+  for (const std::int64_t ns : {kSecond, 3 * kSecond - 1}) {
+    heard.frame(kStart + ns);
+    ASSERT_NE(heard.core.lobes_ahead(), nullptr);
+    EXPECT_EQ(heard.core.lobes_ahead()->points[0].depth_limit, 0.5e-3);
+    ASSERT_NE(heard.core.lobes(), nullptr);
+    EXPECT_EQ(heard.core.lobes()->points[0].depth_limit, 2e-3);
+  }
+  heard.frame(kStart + 3 * kSecond);
+  EXPECT_EQ(heard.core.lobes_ahead(), nullptr);
+  EXPECT_NE(heard.core.lobes(), nullptr);
+}
+
+TEST(Core, APathTakenBackIsAheadNoMore) {
+  Heard heard{settings_of(chattering_cut())};
+  heard.frame(kStart);
+  heard.core.add_lobes(along_the_path(kStart, kStart + 10 * kSecond, 0.5));
+  EXPECT_NE(heard.core.lobes_ahead(), nullptr);
+  EXPECT_EQ(heard.core.lobes(), nullptr);  // it stands in for nothing
+  LobeDiagram none = along_the_path(kStart + kSecond, kStart + kSecond, 0.5);
+  none.valid = false;
+  heard.core.add_lobes(none);
+  EXPECT_NE(heard.core.lobes_ahead(), nullptr);
+  heard.frame(kStart + kSecond);
+  EXPECT_EQ(heard.core.lobes_ahead(), nullptr);
+}
+
+// A pocket here that the path leaves is none: the other speed in step is asked for.
+TEST(Core, WhatLiesAheadTurnsACorrectionAway) {
+  const SyntheticCut cut = chattering_cut();  // 717 Hz, two teeth: 10755 and 7170 rpm are in step
+  std::vector<double> here(61, 0.5), ahead(61, 5.0);
+  for (std::size_t i = 8; i < 16; ++i) here[i] = 3.0, ahead[i] = 0.1;  // 6800 to 7500 rpm
+  for (std::size_t i = 44; i < 53; ++i) here[i] = 1.2;                 // barely stable: 10400 to 11200 rpm
+  std::vector<double> targets;
+  for (const bool announced : {false, true}) {
+    Heard heard{settings_of(cut)};
+    LobeDiagram diagram = diagram_of(here, spindle_6000_to_12000());
+    heard.core.add_lobes(diagram);
+    diagram = diagram_of(ahead, spindle_6000_to_12000());
+    diagram.ahead = true;
+    diagram.usable_until_ns = kStart + 10 * kSecond;
+    if (announced) heard.core.add_lobes(diagram);
+    heard.play(record(cut));
+    const std::vector<Event> corrections = only(heard.events, EventType::correction);
+    ASSERT_FALSE(corrections.empty());
+    targets.push_back(corrections[0].spindle_speed_rpm);
+  }
+  EXPECT_NEAR(targets[0], 7170.0, 100.0);
+  EXPECT_NEAR(targets[1], 10755.0, 100.0);
 }
 
 TEST(Core, AnInvalidDiagramReplacesAValidOne) {  // the robot has left the measured postures

@@ -38,7 +38,7 @@ class Ladder : public ::testing::Test {
     cut.chatter_frequency_hz = 738.0;
     cut.teeth = 2;
     cut.present.speed = cut.programmed.speed = rpm_to_rad_s(9000);
-    cut.prediction = {&diagram, nullptr, 1e-3, 1.0};
+    cut.prediction = {&diagram, nullptr, 1e-3};
   }
 
   void set_limits(double pocket, double elsewhere) {

@@ -23,6 +23,7 @@ inline MonitorView chattering(std::int64_t stamp_ns, double frequency_hz = 738.0
   view.chatter = true;
   view.kind = ChatterKind::regenerative;
   view.chatter_frequency_hz = frequency_hz;
+  view.chatter_amplitude = 10.0;
   return view;
 }
 

@@ -46,31 +46,17 @@ TEST(PredictedMargin, IsUnknownWithoutADiagramADepthOrInsideOfNone) {
   const SpindleLimits spindle = spindle_6000_to_12000();
   const LobeDiagram diagram = diagram_of({1, 1, 1}, spindle);
   const double speed = rpm_to_rad_s(9000);
-  EXPECT_EQ(margin_at(Prediction{&diagram, nullptr, 1e-3, 1.0}, speed), 0.0);
-  EXPECT_EQ(safe_margin_at(Prediction{&diagram, nullptr, 1e-3, 1.0}, speed), 0.0);
+  EXPECT_EQ(margin_at(Prediction{&diagram, nullptr, 1e-3}, speed), 0.0);
+  EXPECT_EQ(safe_margin_at(Prediction{&diagram, nullptr, 1e-3}, speed), 0.0);
   const LobeDiagram none;
-  for (const Prediction& p :
-       {Prediction{}, Prediction{nullptr, nullptr, 1e-3, 1.0}, Prediction{&none, &none, 1e-3, 1.0},
-        Prediction{&diagram, nullptr, kNaN, 1.0}, Prediction{&diagram, nullptr, 0.0, 1.0}}) {
+  for (const Prediction& p : {Prediction{}, Prediction{nullptr, nullptr, 1e-3}, Prediction{&none, &none, 1e-3},
+                              Prediction{&diagram, nullptr, kNaN}, Prediction{&diagram, nullptr, 0.0}}) {
     EXPECT_TRUE(std::isnan(margin_at(p, speed)));
     EXPECT_TRUE(std::isnan(safe_margin_at(p, speed)));
   }
   for (const double outside : {rpm_to_rad_s(5000), rpm_to_rad_s(13000), 0.0, -speed, kNaN, kInfinity}) {
-    EXPECT_TRUE(std::isnan(margin_at(Prediction{&diagram, nullptr, 1e-3, 1.0}, outside)));
-    EXPECT_TRUE(std::isnan(safe_margin_at(Prediction{&diagram, nullptr, 1e-3, 1.0}, outside)));
-  }
-}
-
-TEST(PredictedMargin, LobesLieAtSpeedsHigherByTheScale) {
-  ChoiceCases cases{2};
-  for (int i = 0; i < 2000; ++i) {
-    const SpindleLimits spindle = cases.limits().spindle;
-    KeptPrediction p;
-    p.here = cases.diagram(spindle);
-    p.frequency_scale = cases.between(0.94, 1.06);
-    const LobePoint& point = p.here->points[static_cast<std::size_t>(cases.whole(0, p.here->point_count - 1))];
-    const double limit = std::isnan(point.depth_limit) ? 0.0 : point.depth_limit;
-    EXPECT_EQ(margin_at(p.view(), point.speed * p.frequency_scale), limit / p.axial_depth - 1.0);
+    EXPECT_TRUE(std::isnan(margin_at(Prediction{&diagram, nullptr, 1e-3}, outside)));
+    EXPECT_TRUE(std::isnan(safe_margin_at(Prediction{&diagram, nullptr, 1e-3}, outside)));
   }
 }
 
@@ -86,15 +72,15 @@ TEST(SafeMargin, IsTheLeastInReachWithLimitsLowerByTheirScatter) {
     double wanted = kNaN;
     for (const LobeDiagram* d : {p.view().here, p.view().ahead}) {
       if (d == nullptr) continue;
-      const double reach = kReachKnown + (p.frequency_scale == 1.0 ? d->speed_scatter : 0.0);
+      const double reach = kReachKnown + d->speed_scatter;
       double least = kNaN;
       const auto look = [&](double there) {
-        const double limit = depth_limit_at(*d, there / p.frequency_scale);
+        const double limit = depth_limit_at(*d, there);
         if (!std::isnan(limit)) least = std::isnan(least) ? limit : std::min(least, limit);
       };
       for (int k = 0; k <= 400; ++k) look(speed * (1.0 - reach + 2.0 * reach * k / 400.0));
       for (int k = 0; k < d->point_count; ++k) {
-        const double there = d->points[static_cast<std::size_t>(k)].speed * p.frequency_scale;
+        const double there = d->points[static_cast<std::size_t>(k)].speed;
         if (std::abs(there - speed) <= reach * speed) look(there);
       }
       const double margin = least * (1.0 - d->depth_scatter) / 1e-3 - 1.0;
@@ -114,48 +100,26 @@ TEST(SafeMargin, IsTheLeastInReachWithLimitsLowerByTheirScatter) {
   EXPECT_GT(lower, 500);
 }
 
-// What was heard says where the lobes lie better than the map does.
-TEST(SafeMargin, AHeardScaleReplacesTheScatterOfTheSpeeds) {
-  const SpindleLimits spindle = spindle_6000_to_12000();
-  LobeDiagram diagram = diagram_of(std::vector<double>(61, 2.0), spindle);
-  diagram.points[34].depth_limit = 0.5e-3;  // 9400 rpm
-  diagram.speed_scatter = 0.06;
-  Prediction p{&diagram, nullptr, 1e-3, 1.0};
-  EXPECT_NEAR(safe_margin_at(p, rpm_to_rad_s(9000)), -0.5, 1e-12);
-  p.frequency_scale = 1.021;  // the dip at 9597 rpm
-  EXPECT_NEAR(safe_margin_at(p, rpm_to_rad_s(9000)), 1.0, 1e-12);
-  EXPECT_NEAR(safe_margin_at(p, rpm_to_rad_s(9597)), -0.5, 1e-12);
+TEST(BaseFrequency, ASidebandLeadsBackToTheChatterAndAnythingElseIsLeftAsHeard) {
+  LobeDiagram diagram = diagram_at_700_hz();
+  const double speed = rpm_to_rad_s(9000), passing_hz = 300.0;  // of two teeth
+  for (const double chatter_hz : {690.0, 700.0, 715.0})
+    for (const int j : {-2, -1, 0, 1, 2, 5})
+      EXPECT_NEAR(base_frequency(diagram, speed, 2, chatter_hz + j * passing_hz), chatter_hz, 1e-9);
+  for (const double other_hz : {850.0, 1150.0, 540.0}) EXPECT_EQ(base_frequency(diagram, speed, 2, other_hz), other_hz);
+  diagram.modes[0].frequency_hz = 1000.0;  // a mode of its own there: heard as it is
+  diagram.mode_count = 1;
+  EXPECT_EQ(base_frequency(diagram, speed, 2, 1000.0), 1000.0);
 }
 
-TEST(HeardFrequencyScale, IsTheRatioBetweenTwoAndSixPerCentAndOneElsewhere) {
+TEST(BaseFrequency, WithoutAPredictionOrAToothPassingItIsAsHeard) {
   const LobeDiagram diagram = diagram_at_700_hz();
-  const double speed = rpm_to_rad_s(8000);
-  for (double ratio = 0.8; ratio < 1.2; ratio += 0.0013) {
-    const double off = std::abs(ratio - 1.0);
-    const double scale = heard_frequency_scale(diagram, speed, 700.0 * ratio);
-    if (off > 0.02 && off < 0.06) {
-      EXPECT_NEAR(scale, ratio, 1e-12);
-    } else {
-      EXPECT_EQ(scale, 1.0);
-    }
-  }
-}
-
-TEST(HeardFrequencyScale, IsOneWhereNothingIsHeardOrPredicted) {
-  const double speed = rpm_to_rad_s(8000), heard_hz = 730.0;
-  const LobeDiagram good = diagram_at_700_hz();
-  ASSERT_NE(heard_frequency_scale(good, speed, heard_hz), 1.0);
-  for (const double nothing : {kNaN, kInfinity, 0.0, -730.0})
-    EXPECT_EQ(heard_frequency_scale(good, speed, nothing), 1.0);
-  for (const double outside : {rpm_to_rad_s(5000), rpm_to_rad_s(13000), kNaN})
-    EXPECT_EQ(heard_frequency_scale(good, outside, heard_hz), 1.0);
-  EXPECT_EQ(heard_frequency_scale({}, speed, heard_hz), 1.0);
-  LobeDiagram changing = good;  // another mode chatters from 9000 rpm on: in between neither is predicted
-  changing.points[1].chatter_frequency_hz = 750.0;
-  EXPECT_EQ(heard_frequency_scale(changing, speed, heard_hz), 1.0);
-  LobeDiagram stable = good;
-  stable.points[0] = {stable.points[0].speed, kInfinity, kNaN};
-  EXPECT_EQ(heard_frequency_scale(stable, speed, heard_hz), 1.0);
+  const double speed = rpm_to_rad_s(9000);
+  EXPECT_EQ(base_frequency({}, speed, 2, 1000.0), 1000.0);
+  EXPECT_EQ(base_frequency(diagram, speed, 0, 1000.0), 1000.0);
+  for (const double bad : {0.0, -speed, kNaN, kInfinity, rpm_to_rad_s(20000)})
+    EXPECT_EQ(base_frequency(diagram, bad, 2, 1000.0), 1000.0);
+  EXPECT_TRUE(std::isnan(base_frequency(diagram, speed, 2, kNaN)));
 }
 
 TEST(Explains, AFrequencyNearAModeOrNearThePredictedChatterIsKnown) {

@@ -18,7 +18,8 @@ def message_classes(folder):
     (folder / "stillcut").mkdir(parents=True)  # lcm-gen makes no folder itself
     subprocess.run(["lcm-gen", "-p", "--ppath", str(folder), *map(str, sorted(TYPES.glob("*.lcm")))], check=True)
     sys.path.insert(0, str(folder))
-    names = {"STILLCUT_CORRECTION": "correction_t", "STILLCUT_EVENT": "event_t", "STILLCUT_STATUS": "status_t"}
+    names = {"STILLCUT_CORRECTION": "correction_t", "STILLCUT_EVENT": "event_t", "STILLCUT_STATUS": "status_t",
+             "ROBOT_STATE": "robot_state_t", "ROBOT_ACK": "correction_ack_t"}
     return {channel: getattr(importlib.import_module("stillcut." + name), name) for channel, name in names.items()}
 
 

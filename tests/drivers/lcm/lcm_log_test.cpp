@@ -136,6 +136,28 @@ TEST_F(LcmLog, CountsMessagesThatCannotBeTrusted) {
   EXPECT_EQ(reader.bad(), 3);
 }
 
+TEST_F(LcmLog, YieldsTheAnnouncedPathAtItsEventTimeAndCountsABadOne) {
+  RandomMessages random(9);
+  RobotPath path = random.path();
+  while (path.count < 2) path = random.path();
+  RobotPath bad = path;
+  bad.points[1].after = -1.0;
+  write_log(folder_.path() / "path.log", {{"ROBOT_STATE", encode(random.state())},
+                                          {"ROBOT_PATH", encode(bad)},
+                                          {"ROBOT_PATH", encode(path)},
+                                          {"ROBOT_PATH", encode(RobotPath{})}});
+  LcmLogReader reader(folder_.path() / "path.log");
+  std::vector<RobotMessage> messages = read_all(reader);
+  ASSERT_EQ(messages.size(), 3U);
+  ASSERT_TRUE(std::holds_alternative<RobotPath>(messages[1]) && std::holds_alternative<RobotPath>(messages[2]));
+  RobotPath& read = std::get<RobotPath>(messages[1]);
+  EXPECT_EQ(read.stamp_ns, (kStartUs + 2000) * 1000);
+  read.stamp_ns = path.stamp_ns;
+  EXPECT_EQ(encode(read), encode(path));
+  EXPECT_EQ(std::get<RobotPath>(messages[2]).count, 0U);
+  EXPECT_EQ(reader.bad(), 1);
+}
+
 TEST_F(LcmLog, RefusesAFileWithoutAWholeEvent) {
   const std::string expected =
       (folder_.path() / "test.log").string() + ": holds no LCM event; name a log of lcm-logger";

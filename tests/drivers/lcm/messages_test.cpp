@@ -37,6 +37,7 @@ TEST(Messages, KeepTheFingerprintsOfTheContract) {
   EXPECT_EQ(fingerprint(encode(CorrectionAck{})), 0x2FEE73E5E3891E5EULL);
   EXPECT_EQ(fingerprint(encode(Event{})), 0x85F9F85B45B5FCA7ULL);
   EXPECT_EQ(fingerprint(encode(Status{})), 0x4D95E8BB0BDB9130ULL);
+  EXPECT_EQ(fingerprint(encode(RobotPath{})), 0x74DFAE90E046EA02ULL);
 }
 
 TEST(Messages, ComeBackBitForBit) {
@@ -46,6 +47,11 @@ TEST(Messages, ComeBackBitForBit) {
     const auto state_back = decode_robot_state(encode(state), state.stamp_ns);
     ASSERT_TRUE(state_back.ok()) << state_back.why_not;
     expect_same(state, state_back.value);
+
+    const RobotPath path = random.path();
+    const auto path_back = decode_robot_path(encode(path), path.stamp_ns);
+    ASSERT_TRUE(path_back.ok()) << path_back.why_not;
+    expect_same(path, path_back.value);
 
     const CorrectionAck ack = random.ack();
     const auto ack_back = decode_correction_ack(encode(ack, "why"), ack.stamp_ns);
@@ -171,14 +177,15 @@ TEST(Messages, RefuseEnumerationsOutOfRange) {
 
 // Returns how many of the decoders accept the bytes.
 int accepted_by(std::span<const std::uint8_t> bytes) {
-  return int{decode_robot_state(bytes, 0).ok()} + int{decode_correction_ack(bytes, 0).ok()} +
-         int{decode_correction(bytes).ok()} + int{decode_event(bytes).ok()} + int{decode_status(bytes).ok()};
+  return int{decode_robot_state(bytes, 0).ok()} + int{decode_robot_path(bytes, 0).ok()} +
+         int{decode_correction_ack(bytes, 0).ok()} + int{decode_correction(bytes).ok()} +
+         int{decode_event(bytes).ok()} + int{decode_status(bytes).ok()};
 }
 
 TEST(Messages, RefuseBytesOfAnotherTypeOrLength) {
   RandomMessages random(2);
-  const MessageBytes messages[] = {encode(random.state()), encode(random.ack(), "late"), encode(random.correction()),
-                                   encode(random.event()), encode(random.status())};
+  const MessageBytes messages[] = {encode(random.state()),      encode(random.path()),  encode(random.ack(), "late"),
+                                   encode(random.correction()), encode(random.event()), encode(random.status())};
   for (const MessageBytes& message : messages) {
     EXPECT_EQ(accepted_by(message), 1);
     for (std::size_t length = 0; length < message.size(); ++length) {
@@ -208,8 +215,8 @@ TEST(Messages, SurviveAnyDamage) {
   std::mt19937 damage(4);
   int refused = 0;
   for (int i = 0; i < 2000; ++i) {
-    MessageBytes bytes[] = {encode(random.state()), encode(random.ack(), "late"), encode(random.correction()),
-                            encode(random.event()), encode(random.status())};
+    MessageBytes bytes[] = {encode(random.state()),      encode(random.path()),  encode(random.ack(), "late"),
+                            encode(random.correction()), encode(random.event()), encode(random.status())};
     for (MessageBytes& message : bytes) {
       for (int change = 0; change < 3; ++change) {
         message[damage() % message.size()] = static_cast<std::uint8_t>(damage());

@@ -27,16 +27,19 @@ class Inbox {
   RobotHandlers handlers() {
     return {.on_state = [this](const RobotState& state) { add([&] { states.push_back(state); }); },
             .on_ack = [this](const CorrectionAck& ack) { add([&] { acks.push_back(ack); }); },
+            .on_path = [this](const RobotPath& path) { add([&] { paths.push_back(path); }); },
             .on_bad = [this](std::string_view, const char* why_not) { add([&] { bad.emplace_back(why_not); }); }};
   }
   // False when fewer have come after ten seconds: a broken link, not a slow machine.
   bool wait_for(std::size_t messages) {
     std::unique_lock lock(mutex_);
-    return arrived_.wait_for(lock, 10s, [&] { return states.size() + acks.size() + bad.size() >= messages; });
+    return arrived_.wait_for(lock, 10s,
+                             [&] { return states.size() + acks.size() + paths.size() + bad.size() >= messages; });
   }
 
   std::vector<RobotState> states;
   std::vector<CorrectionAck> acks;
+  std::vector<RobotPath> paths;
   std::vector<std::string> bad;
 
  private:
@@ -105,6 +108,31 @@ TEST(PublishSubscribe, CountsAndReportsWhatCannotBeTrusted) {
   EXPECT_EQ(subscriber.received(), 1);
   EXPECT_EQ(inbox.states.size(), 1U);
   EXPECT_EQ(inbox.bad.at(0), "feed_rate_m_per_s is not a number from 0 to 100");
+}
+
+TEST(PublishSubscribe, CarriesTheAnnouncedPathAndReportsABadOne) {
+  RandomMessages random(8);
+  const LcmConnection connection = open_lcm("memq://");
+  Inbox inbox;
+  Subscriber subscriber(
+      connection, [] { return 7'000'500; }, inbox.handlers());
+  Publisher publisher(connection);
+  RobotPath path = random.path();
+  while (path.count < 2) path = random.path();
+  EXPECT_TRUE(publisher.publish(path));
+  RobotPath bad = path;
+  bad.points[1].feed_direction = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(publisher.publish(bad));
+  const MessageBytes whole = encode(path);
+  lcm_publish(connection.get(), kRobotPathChannel, whole.data(), static_cast<unsigned>(whole.size() - 1));
+  ASSERT_TRUE(inbox.wait_for(3));
+  ASSERT_EQ(inbox.paths.size(), 1U);
+  EXPECT_EQ(inbox.paths[0].stamp_ns, 7'000'000);  // of receipt, in whole microseconds
+  inbox.paths[0].stamp_ns = path.stamp_ns;
+  EXPECT_EQ(encode(inbox.paths[0]), encode(path));
+  EXPECT_EQ(subscriber.received(), 1);
+  EXPECT_EQ(subscriber.bad(), 2);
+  EXPECT_EQ(inbox.bad.at(0), "feed_direction_rad is no angle");
 }
 
 // What the daemon publishes, received with LCM's own means.

@@ -36,6 +36,22 @@ class RandomMessages {
     s.block = whole(-1000, 100000);
     return s;
   }
+  RobotPath path() {
+    RobotPath p;
+    p.stamp_ns = stamp();
+    p.count = static_cast<std::size_t>(whole(0, static_cast<int>(RobotPath::kMaxPoints)));
+    double after = 0.0;
+    for (std::size_t i = 0; i < p.count; ++i) {
+      PathPoint& point = p.points[i];
+      point.after = after += uniform(0, 2);
+      for (double& joint : point.joint_position) joint = uniform(-6, 6);
+      for (double& coordinate : point.tcp_position) coordinate = uniform(-3, 3);
+      point.feed_direction = uniform(-3, 3);
+      point.radial_depth = coin() ? kNaN : uniform(0, 0.1);
+      point.milling = static_cast<Milling>(whole(0, 3));
+    }
+    return p;
+  }
   CorrectionAck ack() { return {stamp(), whole(0, 1 << 30), coin(), uniform(0, 20000), uniform(0, 2)}; }
   Correction correction() {
     Correction c;
