@@ -16,10 +16,10 @@
 namespace stillcut {
 namespace {
 
-constexpr int kMomentsLooked = 60;                    // of the program, for its depth limit
-constexpr double kBelowLimit = 0.9;                   // of the depth limit
-constexpr double kFullDepth = 0.95, kAtTheEnd = 1.0;  // of the deepest; s
-constexpr double kBeforeExit = 0.1;                   // s: nothing of the exit yet
+constexpr int kMomentsLooked = 60;                        // of the program, for its depth limit
+constexpr double kBelowLimit = 0.9;                       // of the depth limit
+constexpr double kNearlyDeepest = 0.95, kAtTheEnd = 1.0;  // of the deepest; s
+constexpr double kBeforeExit = 0.1;                       // s: nothing of the exit yet
 
 // The schedule, nowhere above `most`: with a point where it crosses that.
 Schedule capped(const Schedule& schedule, double most) {
@@ -63,7 +63,7 @@ void measure_wall(const Cell& cell, ComparedRun& run) {
   double deepest = 0.0, last_full = 0.0, sum = 0.0;
   for (const MachineMoment& moment : moments) deepest = std::max(deepest, moment.axial_depth);
   for (const MachineMoment& moment : moments)
-    if (moment.axial_depth >= kFullDepth * deepest) last_full = moment.time;
+    if (moment.axial_depth >= kNearlyDeepest * deepest) last_full = moment.time;
   double way = 0.0, from = wall.front().along;
   int count = 0;
   for (std::size_t i = 1; i < moments.size() && from + kWallSamplingLength <= wall.back().along; ++i) {

@@ -18,6 +18,7 @@ constexpr double kDown = 0.1;                      // of the peak
 constexpr double kNoise = 2.0;                     // of what noise leaves in 95 % of the time
 constexpr double kTimeConstants = 4.0, kRoom = 0.1;  // of the spindle; s
 constexpr double kBack = 0.3, kDownFor = 0.2;        // of the peak, s: chatter that was down so long is back
+constexpr double kSurelyDown = 1.0;                  // s
 constexpr int kManyTimes = 2;
 constexpr double kFloorFor = 4.0;    // s of the deep cut
 constexpr double kBeforeExit = 0.4;  // s: the tool is still whole in the part
@@ -151,12 +152,17 @@ double move_duration(const RandomCell& cell, const VirtualMachine& machine, cons
   return plan.error == TrajectoryError::none ? plan.trajectory.duration() : 0.0;
 }
 
-// From when on the amplitude stays below a level, s after `from`.
-double down_after(const Amplitude& amplitude, double level, double from, double until) {
-  double last = from;
-  for (double time = from; time < until; time += 1e-3)
-    if (amplitude.at(time) > level) last = time;
-  return last + 2e-3 < until ? last - from : RunMetrics::kFar;
+// From when on the amplitude is below a level for a second at least and never again above another, s after `from`.
+double down_after(const Amplitude& amplitude, double level, double back, double from, double until) {
+  double since = from;  // below the level
+  double down = RunMetrics::kFar;
+  for (double time = from; time < until; time += 1e-3) {
+    const double now = amplitude.at(time);
+    if (now > level) since = time;
+    if (now > back) down = RunMetrics::kFar;
+    if (down == RunMetrics::kFar && time - since >= kSurelyDown) down = since - from;
+  }
+  return down;
 }
 
 void measure_amplitude(const RandomCell& cell, const Amplitude& amplitude, RunMetrics& run) {
@@ -169,8 +175,11 @@ void measure_amplitude(const RandomCell& cell, const Amplitude& amplitude, RunMe
   run.at_alarm = amplitude.at(run.alarm);
   if (!run.asked.empty()) run.at_correction = amplitude.at(run.asked.front().time);
   run.times_back = times_back(amplitude, run.peak, run.alarm, end);
-  run.down_after = down_after(amplitude, kDown * run.peak, run.alarm, end);
-  run.down_to_noise_after = down_after(amplitude, std::fmax(kDown * run.peak, kNoise * run.in_pocket), run.alarm, end);
+  const double level = kDown * run.peak, noise = std::fmax(level, kNoise * run.in_pocket);
+  const double back = std::fmax(kBack * run.peak, noise);
+  run.down_after = down_after(amplitude, level, back, run.alarm, end);
+  run.down_to_noise_after = down_after(amplitude, noise, back, run.alarm, end);
+  run.below_for_good_after = down_after(amplitude, level, level, run.alarm, end);
 }
 
 // What the noise of the force leaves of motion in the pocket: the same cut, its speed programmed, no monitor.

@@ -37,9 +37,11 @@ struct RunMetrics {
 
   // Amplitude of the chatter: sqrt(2) times the rms of the motion that does not repeat, over 50 ms (250 ms where the
   // chatter is slower than 80 Hz), of what of it is faster than 80 Hz where the chatter is.
-  double peak = 0.0;                             // m
-  double down_after = kNaN;                      // s after the alarm: from then on below a tenth of the peak
+  double peak = 0.0;  // m
+  // s after the alarm: below a tenth of the peak for a second at least, and never again above three tenths
+  double down_after = kNaN;
   double down_to_noise_after = kNaN;             // s, the same, where twice `in_pocket` counts as down too
+  double below_for_good_after = kNaN;            // s, never again above a tenth, noise or not
   double at_alarm = kNaN, at_correction = kNaN;  // m
   double sound = kNaN;                           // m, before the deep cut
   double settled = kNaN;                         // m, 95 % of the second half of the deep cut
