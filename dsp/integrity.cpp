@@ -50,8 +50,9 @@ std::uint32_t SampleCheck::check(const SampleBlock& block, int i) noexcept {
     }
     full_[a] = (block.full_scale[a] >> i & 1U) != 0 ? full_[a] + 1 : 0;
     if (full_[a] >= kFullScaleToBeSaturated) doubts |= kSaturated;
-    // A sensor may hold each value for two or three samples (a slower source behind it); eight is a stuck one. Zeros
-    // are given longer: a coarse sensor at rest reads zero for a while.
+    // A sensor may hold each value for two or three samples (a slower source behind it), and one of coarse resolution
+    // repeats a value by chance some times more: eight equal ones were seen once in ten minutes. Sixteen are a stuck
+    // sensor. Zeros are given longer: a coarse sensor at rest reads zero for a while.
     equal_[a] = x == last_[a] ? equal_[a] + 1 : 1;
     last_[a] = x;
     if (equal_[a] >= (x == 0.0F ? kZerosToBeDead : kEqualToBeStuck) && full_[a] == 0) doubts |= kStuck;

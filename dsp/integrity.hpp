@@ -16,7 +16,7 @@ enum Doubt : std::uint32_t {
   kNoDoubt = 0,
   kGap = 1U << 0,               // samples are missing
   kSaturated = 1U << 1,         // three samples in a row at the end of the range
-  kStuck = 1U << 2,             // eight equal samples while the signal is not zero
+  kStuck = 1U << 2,             // sixteen equal samples while the signal is not zero
   kNotFinite = 1U << 3,         // NaN or infinity
   kSpeedMissing = 1U << 4,      // no speed message for too long
   kSpeedImplausible = 1U << 5,  // negative, not a number, far beyond the spindle, or zero while the tool cuts
@@ -38,7 +38,7 @@ class SampleCheck {
   void forget_runs() noexcept;
 
  private:
-  static constexpr int kEqualToBeStuck = 8, kZerosToBeDead = 256, kFullScaleToBeSaturated = 3;
+  static constexpr int kEqualToBeStuck = 16, kZerosToBeDead = 256, kFullScaleToBeSaturated = 3;
 
   std::array<float, kMaxAxes> last_{};
   std::array<int, kMaxAxes> equal_{}, full_{};

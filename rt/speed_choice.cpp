@@ -12,7 +12,7 @@ namespace {
 constexpr double kAlreadyThere = 0.005;  // a target this near is no move
 constexpr double kSameTarget = 0.01;     // of one already tried
 constexpr double kSamePocket = 0.025;    // the same, of a target that is in step with nothing
-constexpr double kBeside = 0.03;         // relative: how far from n_k its pocket is looked for
+constexpr double kBeside = 0.01;         // relative: the error of n_k, within which a safe speed is looked for
 constexpr double kBesideOfLobe = 0.2;    // the same in distances between two n_k
 constexpr int kBesideSteps = 6;          // to each side
 constexpr double kHighestLobe = 1e6;     // beyond it speeds and frequency do not belong together

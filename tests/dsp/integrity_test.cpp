@@ -26,9 +26,9 @@ std::vector<std::uint32_t> doubts(const std::vector<float>& samples, const std::
   return raised;
 }
 
-TEST(SampleCheck, CallsEightEqualSamplesStuck) {
-  const auto raised = doubts(std::vector<float>(10, 1.5F));
-  for (std::size_t i = 0; i < raised.size(); ++i) EXPECT_EQ(raised[i], i < 7 ? kNoDoubt : kStuck) << i;
+TEST(SampleCheck, CallsSixteenEqualSamplesStuck) {
+  const auto raised = doubts(std::vector<float>(20, 1.5F));
+  for (std::size_t i = 0; i < raised.size(); ++i) EXPECT_EQ(raised[i], i < 15 ? kNoDoubt : kStuck) << i;
 }
 
 TEST(SampleCheck, AllowsASensorThatHoldsEachValueForTwoOrThreeSamples) {

@@ -60,7 +60,7 @@ TEST_F(RandomSpeeds, GroundsMeanWhatTheySay) {
       case SpeedGrounds::agreed:
         ASSERT_GE(choice.lobe, 1);
         EXPECT_GT(safe, 0.0);
-        EXPECT_LE(std::abs(choice.target - n_k), std::min(0.03, 0.2 / choice.lobe) * n_k * (1.0 + 1e-9));
+        EXPECT_LE(std::abs(choice.target - n_k), std::min(0.01, 0.2 / choice.lobe) * n_k * (1.0 + 1e-9));
         break;
       case SpeedGrounds::predicted:
         EXPECT_EQ(choice.lobe, 0);
