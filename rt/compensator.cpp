@@ -226,6 +226,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
   s.chatter_frequency_hz = frequency_of_chatter(in);
   s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
+  s.deafened = in.monitor->doubts != kNoDoubt;
   const std::int64_t patience_ns = in.monitor->doubts == kNoDoubt ? kPatience_ns : kPatienceDeaf_ns;
   s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, patience_ns);
   s.teeth = settings_.teeth;

@@ -192,6 +192,7 @@ Candidate next_candidate(const ChatterSituation& s, const Attempts& attempts,
   const auto& order = s.structural ? of_structure : of_tool;
   for (const Rung* rung : order)
     if (is_some(*rung) && rung->stable) return rung->candidate;
+  if (s.deafened) return stop_candidate(s, attempts, limits);
   for (const Rung* rung : order)
     if (is_some(*rung)) return rung->candidate;
   const Rung feed = feed_rung(s, attempts, limits);
