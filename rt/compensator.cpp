@@ -10,7 +10,8 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000;
+constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000, kUnpredictedFaintWaits_ns = 3'000'000'000;
+constexpr double kBeyondDoubt = 3.0;  // of the indicator
 constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
 constexpr std::int64_t kPatience_ns =
     6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
@@ -226,6 +227,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
   s.chatter_frequency_hz = frequency_of_chatter(in);
   s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
+  s.doubtful = is_contradicted(in) && !(heard.indicator >= kBeyondDoubt);
   s.deafened = in.monitor->doubts != kNoDoubt;
   const std::int64_t patience_ns = in.monitor->doubts == kNoDoubt ? kPatience_ns : kPatienceDeaf_ns;
   s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, patience_ns);
@@ -247,6 +249,11 @@ double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noex
                              : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
 }
 
+// Whether what is heard is predicted not to be: by the lobes, or by a robot that is out of the part.
+bool Compensator::is_contradicted(const CompensatorInputs& in) const noexcept {
+  return in.coming_depth <= 0.0 || safe_margin_at(coming_prediction(in), in.monitor->speed) > 0.0;
+}
+
 // Loud, and for so long as it takes to be believed: at once where chatter is predicted. Elsewhere a line of unknown
 // kind may be forced, and a burst be that of an entry.
 bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
@@ -255,10 +262,11 @@ bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
   if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
   const Prediction coming = coming_prediction(in);
   if (margin_at(coming, heard.speed) < 0.0) return true;
-  const bool predicted_stable = safe_margin_at(coming, heard.speed) > 0.0;
-  const std::int64_t lasts_ns = predicted_stable                     ? kUnpredictedWaits_ns
-                                : heard.kind == ChatterKind::unknown ? kUnknownKindWaits_ns
-                                                                     : 0;
+  const bool unknown = heard.kind == ChatterKind::unknown;
+  const bool faint = !(heard.indicator >= kBeyondDoubt);
+  const std::int64_t lasts_ns = !is_contradicted(in) ? (unknown ? kUnknownKindWaits_ns : 0)
+                                : unknown || faint   ? kUnpredictedFaintWaits_ns
+                                                     : kUnpredictedWaits_ns;
   return has_run(chatter_since_ns_, in.now_ns, lasts_ns);
 }
 
@@ -269,8 +277,7 @@ bool Compensator::structure_chatters(const CompensatorInputs& in) const noexcept
   if (!heard.structural) return false;
   if (in.lobes != nullptr && in.lobes->mode_count > 0 && !is_at_a_mode(*in.lobes, heard.structural_frequency_hz))
     return false;
-  return !(safe_margin_at(coming_prediction(in), heard.speed) > 0.0) ||
-         has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
+  return !is_contradicted(in) || has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
 }
 
 // The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then

@@ -77,6 +77,7 @@ class Compensator {
     return in.monitor->chatter || in.monitor->structural || deafened(in);
   }
   [[nodiscard]] bool tool_chatters(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool is_contradicted(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool structure_chatters(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] Prediction coming_prediction(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool reason_is_gone(const CompensatorInputs& in) const noexcept;

@@ -195,6 +195,11 @@ Candidate next_candidate(const ChatterSituation& s, const Attempts& attempts,
   if (s.deafened) return stop_candidate(s, attempts, limits);
   for (const Rung* rung : order)
     if (is_some(*rung)) return rung->candidate;
+  if (s.doubtful) {
+    Candidate nothing;
+    nothing.limited_by = kNoStableSettingKnown;
+    return nothing;
+  }
   const Rung feed = feed_rung(s, attempts, limits);
   return is_some(feed) ? feed.candidate : stop_candidate(s, attempts, limits);
 }

@@ -60,6 +60,7 @@ struct ChatterSituation {
   bool structural = false;            // of the robot's structure alone: the tool's recipe n_k does not apply
   double chatter_frequency_hz = 0.0;  // NaN: no single line
   double vibration_hz = 0.0;          // the same, or of the structure; NaN: not known
+  bool doubtful = false;              // faint, and predicted not to be: no reason to slow down or to stop
   bool deafened = false;              // the sensor is beyond its range: what is only better than now is not enough
   bool patience_is_out = false;       // it has chattered on for so long that only the last resort is left
   int teeth = 0;
