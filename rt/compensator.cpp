@@ -136,14 +136,15 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   next.kind == CorrectionKind::release ? say_none(in, next, out) : start(in, next, out);
 }
 
-// What falls goes on falling, and what has fallen to a tenth and stays there is the forced vibration of the new speed
-// or an echo of it: both are the success that was asked for.
+// What falls goes on falling, and what has fallen to a tenth and stays there, where no chatter is predicted, is the
+// forced vibration of the new speed or an echo of it: both are the success that was asked for.
 bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
   const MonitorView& heard = *in.monitor;
   if (!heard.chatter || !tool_chatters(in) || !heard.single_line || candidate_.kind == CorrectionKind::stop_request)
     return false;
   const double amplitude = heard.chatter_amplitude;
-  if (amplitude > 0.0 && amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
+  const bool predicted_unstable = margin_at(coming_prediction(in), heard.speed) < 0.0;
+  if (!predicted_unstable && amplitude > 0.0 && amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
     tolerated_ = std::max(tolerated_, amplitude);
     phase_ = Phase::holding;
     return true;
@@ -286,7 +287,9 @@ bool Compensator::reason_is_gone(const CompensatorInputs& in) const noexcept {
   if (return_failed_ || settings_.mode != RuntimeMode::active) return false;
   const Prediction now = prediction(in);
   if (!(safe_margin_at(now, programmed_.speed) > kSafeToReturn)) return false;
-  if (!(chatter_margin_ < 0.0)) return in.axial_depth < kMuchShallower * chatter_depth_;
+  // The lobes are those of the direction that the feed now has.
+  const bool turned = candidate_.kind == CorrectionKind::feed_direction;
+  if (turned || !(chatter_margin_ < 0.0)) return in.axial_depth < kMuchShallower * chatter_depth_;
   return margin_at(now, programmed_.speed) > chatter_margin_ + kBetterThanThen;
 }
 
