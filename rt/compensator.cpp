@@ -28,7 +28,7 @@ constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // un
 constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
 constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
 constexpr double kFalls = 0.7;                                             // from one look to the next
-constexpr std::int64_t kLookAgain_ns = 300'000'000;
+constexpr std::int64_t kLookAgain_ns = 300'000'000, kDoubtLooksAgain_ns = 1'000'000'000;
 constexpr double kSwingsToAct = 2.0;
 constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
 constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
@@ -124,7 +124,8 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
   const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
   const bool refused = correcting() && attempts_.refused(candidate_.kind);
-  if (acting && !refused) return;
+  const bool looked_in_vain = phase_ == Phase::none && in.now_ns < act_until_ns_;
+  if ((acting && !refused) || looked_in_vain) return;
   if (!tool_chatters(in) && !structure_chatters(in)) return;
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
   if (correcting() && !refused && gives_more_time(in)) return;
@@ -132,7 +133,12 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
     attempts_.add(candidate_, in.axial_depth);
     memory_.forget(place(in));
   }
-  const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
+  const ChatterSituation now = situation(in);
+  const Candidate next = next_candidate(now, attempts_, settings_.limits);
+  if (next.kind == CorrectionKind::release && now.doubtful) {  // what is set is predicted stable: it stays
+    act_until_ns_ = in.now_ns + kDoubtLooksAgain_ns;
+    return;
+  }
   next.kind == CorrectionKind::release ? say_none(in, next, out) : start(in, next, out);
 }
 
@@ -159,11 +165,9 @@ bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
 void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept {
   act_until_ns_ = in.now_ns + kShadowAct_ns;
   const Candidate next = next_candidate(situation(in), attempts_, settings_.limits);
-  const bool other_kind = next.kind != candidate_.kind;
-  const bool other_speed =
-      next.kind == CorrectionKind::spindle_speed &&
-      std::abs(next.setting.speed - candidate_.setting.speed) > kShadowRetarget * candidate_.setting.speed;
-  if (next.kind != CorrectionKind::release && (other_kind || other_speed)) start(in, next, out);
+  const bool same_kind = next.kind == CorrectionKind::spindle_speed && candidate_.kind == next.kind;
+  const double change = std::abs(next.setting.speed - candidate_.setting.speed);
+  if (same_kind && change > kShadowRetarget * candidate_.setting.speed) start(in, next, out);
 }
 
 // A sensor that a cut drives beyond its range cannot be listened to. Where chatter is predicted, or was heard and is

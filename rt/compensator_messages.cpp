@@ -141,6 +141,7 @@ void Compensator::release(const CompensatorInputs& in, const char* reason, Outpu
   c.reason = short_text(reason);
   out.put(c);
   phase_ = Phase::none;
+  act_until_ns_ = 0;
   candidate_ = {};
 }
 

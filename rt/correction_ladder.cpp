@@ -11,6 +11,7 @@
 namespace stillcut {
 namespace {
 
+constexpr double kNearlyStable = -0.15;  // safe margin
 constexpr int kMostSpeeds = 3;           // tried at a depth; chatter costs tool and part meanwhile
 constexpr double kShallower = 0.9;       // of the depth at which something did not help: it may help there
 constexpr double kLeastFeedGain = 0.05;  // less feed than now by this
@@ -46,6 +47,10 @@ Rung speed_rung(const ChatterSituation& s, const Attempts& attempts, const Compe
   question.tried = {tried.speed.data(), tried.count};
   const SpeedChoice choice = choose_speed(question, limits);
   if (!choice.found()) return {};
+  // What is only better chatters on. A tool near its limit does so much less; a structure is thrown as far by a faster
+  // tool.
+  const bool nearly_stable = !s.structural && choice.safe_margin > kNearlyStable;
+  if (choice.grounds == SpeedGrounds::improved && !nearly_stable) return {};
   Rung rung;
   rung.candidate.kind = CorrectionKind::spindle_speed;
   rung.candidate.setting = s.programmed;
@@ -63,7 +68,7 @@ Rung speed_rung(const ChatterSituation& s, const Attempts& attempts, const Compe
 Rung variation_rung(const ChatterSituation& s, const Attempts& attempts, const CompensationLimits& limits) noexcept {
   if (s.structural || !may(CorrectionKind::speed_variation, attempts, s.prediction.axial_depth, 1)) return {};
   const VariationChoice choice = choose_variation({s.present.speed, s.programmed.speed, s.prediction}, limits);
-  if (!choice.found) return {};
+  if (!choice.found || choice.margin_after < kNearlyStable) return {};
   Rung rung;
   rung.candidate.kind = CorrectionKind::speed_variation;
   rung.candidate.setting = s.programmed;
