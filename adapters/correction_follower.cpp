@@ -124,7 +124,8 @@ ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
     return reason("spindle_speed_rpm is not from %.0f to %.0f", settings_.min_speed_rpm, settings_.max_speed_rpm);
   if (!lies_within(c.feed_override, settings_.min_feed_override, kHighestOverride))
     return reason("feed_override is below %.2f, or no number", settings_.min_feed_override);
-  if (c.kind == CorrectionKind::spindle_speed) return {};
+  // A variation whose mean is yet to be reached does not swing.
+  if (c.kind == CorrectionKind::spindle_speed || c.speed_variation_ratio == 0.0) return {};
   if (!(c.speed_variation_ratio > 0.0 && c.speed_variation_ratio <= settings_.max_variation_ratio))
     return reason("speed_variation_ratio is not above 0 and up to %.2f", settings_.max_variation_ratio);
   if (!(c.speed_variation_hz > 0.0 && c.speed_variation_hz <= settings_.max_variation_hz))
@@ -134,7 +135,8 @@ ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
       !lies_within(c.spindle_speed_rpm + amplitude, settings_.min_speed_rpm, settings_.max_speed_rpm))
     return reason("the varied speed leaves %.0f to %.0f rpm", settings_.min_speed_rpm, settings_.max_speed_rpm);
   const double steepest = amplitude * kTwoPi * c.speed_variation_hz;
-  if (steepest > settings_.speed_rate_rpm_per_s)
+  constexpr double kRounding = 1e-6;
+  if (steepest > settings_.speed_rate_rpm_per_s * (1.0 + kRounding))
     return reason("the variation takes %.0f rpm/s, the spindle has %.0f", steepest, settings_.speed_rate_rpm_per_s);
   return {};
 }

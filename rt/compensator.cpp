@@ -19,6 +19,7 @@ constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
 constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
 constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
+constexpr std::int64_t kQuietAsksAnew_ns = 2'000'000'000;
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
 constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
@@ -26,6 +27,8 @@ constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
 constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
+constexpr double kTurned = 0.05, kPathTurned = 0.15;                       // rad
+constexpr double kProgramChanged = 0.02;                                   // relative, of the programmed speed
 constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
 constexpr double kFalls = 0.7;                                             // from one look to the next
 constexpr std::int64_t kLookAgain_ns = 300'000'000, kDoubtLooksAgain_ns = 1'000'000'000;
@@ -64,7 +67,8 @@ const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexce
   if (settings_.mode != RuntimeMode::active) return nullptr;
   if (!in.controller_alive) return "controller silent";
   if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
-  if (!is_heard(in) && !correcting()) refused_ = false;  // a new question
+  // Quiet for a while: a new question.
+  if (!correcting() && has_run(unheard_since_ns_, in.now_ns, kQuietAsksAnew_ns)) refused_ = false;
   return refused_ ? "controller refused or did not answer" : nullptr;
 }
 
@@ -72,6 +76,7 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
   const State state = in.monitor->state;
   run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
+  run_watch(unheard_since_ns_, !is_heard(in), in.now_ns);
   run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && air_since_ns_ == 0, in.now_ns);
   if (const char* reason = reason_to_hold_back(in)) {
     // Where the sensor is beyond its range at the new setting as well, that is no second time the answer.
@@ -86,6 +91,8 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const bool chatter = is_heard(in);
   run_watch(chatter_since_ns_, chatter, in.now_ns);
   run_watch(quiet_since_ns_, !chatter, in.now_ns);
+  if (!chatter || phase_ == Phase::holding) believed_since_ns_ = 0;  // patience is for what was answered and goes on
+  if (correcting() && program_changed(in)) return release(in, "the program changed", out);
   if (phase_ == Phase::stopped) {
     follow_stop(in, out);
   } else if (chatter) {
@@ -136,6 +143,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   const ChatterSituation now = situation(in);
   const Candidate next = next_candidate(now, attempts_, settings_.limits);
   if (next.kind == CorrectionKind::release && now.doubtful) {  // what is set is predicted stable: it stays
+    if (correcting()) phase_ = Phase::acting;
     act_until_ns_ = in.now_ns + kDoubtLooksAgain_ns;
     return;
   }
@@ -151,7 +159,7 @@ bool Compensator::gives_more_time(const CompensatorInputs& in) noexcept {
   const double amplitude = heard.chatter_amplitude;
   const bool predicted_unstable = margin_at(coming_prediction(in), heard.speed) < 0.0;
   if (!predicted_unstable && amplitude > 0.0 && amplitude <= std::max(kFallen * loudest_, kTolerated * tolerated_)) {
-    tolerated_ = std::max(tolerated_, amplitude);
+    if (amplitude <= kFallen * loudest_) tolerated_ = std::max(tolerated_, amplitude);
     phase_ = Phase::holding;
     return true;
   }
@@ -189,6 +197,20 @@ void Compensator::follow_stop(const CompensatorInputs& in, OutputQueue& out) noe
     release(in, "the controller does not stop", out);
     said_none_ = true;
   }
+}
+
+// A correction belongs to the program that it was chosen for: another programmed speed, or a path that takes a turned
+// feed elsewhere, ends it.
+bool Compensator::program_changed(const CompensatorInputs& in) const noexcept {
+  if (phase_ == Phase::stopped) return false;
+  const bool speed = in.nominal_speed > 0.0 && nominal_speed_ > 0.0 &&
+                     std::abs(in.nominal_speed - nominal_speed_) > kProgramChanged * nominal_speed_;
+  if (candidate_.kind != CorrectionKind::feed_direction || motion_time(in.now_ns) < motion_.arrives_at()) return speed;
+  // Controllers tell the direction of the program or that of the motion.
+  const auto away = [&](double direction) {
+    return std::abs(std::remainder(in.feed_direction - direction, kTwoPi)) > kPathTurned;
+  };
+  return speed || (away(motion_.target().feed_direction) && away(programmed_.feed_direction));
 }
 
 // As found when the correction began; before, as it is now. A programmed speed that the spindle cannot turn is none.
@@ -234,14 +256,21 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
   s.doubtful = is_contradicted(in) && !(heard.indicator >= kBeyondDoubt);
   s.deafened = in.monitor->doubts != kNoDoubt;
-  const std::int64_t patience_ns = in.monitor->doubts == kNoDoubt ? kPatience_ns : kPatienceDeaf_ns;
-  s.patience_is_out = settings_.mode == RuntimeMode::active && has_run(chatter_since_ns_, in.now_ns, patience_ns);
+  s.patience_is_out =
+      settings_.mode == RuntimeMode::active && (has_run(believed_since_ns_, in.now_ns, kPatience_ns) ||
+                                                has_run(saturated_since_ns_, in.now_ns, kPatienceDeaf_ns));
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
   s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
+  s.set_speed = s.present.speed;
   s.present.speed = heard.speed;
   s.prediction = coming_prediction(in);
+  // A feed that was turned brings its own lobes; those of the program, to which every other candidate returns, are not
+  // known.
+  if (std::abs(s.present.feed_direction - s.programmed.feed_direction) > kTurned) {
+    s.prediction.here = s.prediction.ahead = nullptr;
+  }
   s.remembered = memory_.recall(place(in));
   return s;
 }
@@ -298,7 +327,7 @@ bool Compensator::reason_is_gone(const CompensatorInputs& in) const noexcept {
 }
 
 void Compensator::remember(const CompensatorInputs& in) noexcept {
-  if (remembered_ || settings_.mode != RuntimeMode::active) return;
+  if (remembered_ || settings_.mode != RuntimeMode::active || candidate_.kind != CorrectionKind::spindle_speed) return;
   remembered_ = true;
   CutPlace there = place(in);
   there.axial_depth = chatter_depth_;

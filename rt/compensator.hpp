@@ -80,6 +80,7 @@ class Compensator {
   [[nodiscard]] bool is_contradicted(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool structure_chatters(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] Prediction coming_prediction(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool program_changed(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool reason_is_gone(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] std::int64_t time_to_act_ns(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double motion_time(std::int64_t now_ns) const noexcept {
@@ -102,10 +103,13 @@ class Compensator {
   std::int64_t began_ns_ = 0, act_until_ns_ = 0, next_publish_ns_ = 0;
   std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this correction
   std::int64_t chatter_since_ns_ = 0, quiet_since_ns_ = 0, air_since_ns_ = 0, saturated_since_ns_ = 0,
-               safe_since_ns_ = 0;  // 0: is not
-  double loudest_ = 0.0;            // m/s^2, of this chatter
-  double checked_ = 0.0;            // when its effect was last looked at
-  double tolerated_ = 0.0;          // what is left of it and stays; 0: nothing was left
+               safe_since_ns_ = 0;      // 0: is not
+  std::int64_t unheard_since_ns_ = 0;   // 0: chatter is heard
+  std::int64_t believed_since_ns_ = 0;  // the chatter that goes on was first answered; 0: none does
+  double nominal_speed_ = 0.0;          // rad/s, as the robot told it when the candidate was chosen
+  double loudest_ = 0.0;                // m/s^2, of this chatter
+  double checked_ = 0.0;                // when its effect was last looked at
+  double tolerated_ = 0.0;              // what is left of it and stays; 0: nothing was left
   double chatter_frequency_hz_ = 0.0;
   double chatter_depth_ = 0.0, chatter_margin_ = 0.0;  // m; predicted at the programmed speed when it was heard
 };

@@ -49,7 +49,7 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   const ChatterSituation now = situation(in);
   if (!correcting()) {
     begin_motion(in);
-    loudest_ = tolerated_ = 0.0;
+    loudest_ = 0.0;
     answered_ns_ = in.now_ns;
     chatter_depth_ = in.axial_depth;
     chatter_margin_ = margin_at(now.prediction, programmed_.speed);
@@ -58,6 +58,9 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   first_sequence_ = sequence_ + 1;
   candidate_ = candidate;
   checked_ = kInfinity;
+  tolerated_ = 0.0;
+  believed_since_ns_ = believed_since_ns_ == 0 ? in.now_ns : believed_since_ns_;
+  nominal_speed_ = in.nominal_speed;
   remembered_ = candidate.remembered;
   phase_ = candidate.kind == CorrectionKind::stop_request ? Phase::stopped : Phase::acting;
   const double of_tool = frequency_of_chatter(in);
@@ -99,7 +102,8 @@ void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcep
   c.sequence = ++sequence_;
   c.valid_for_ms = kValidFor_ms;
   c.mode = settings_.mode;
-  c.kind = returning ? CorrectionKind::spindle_speed : candidate_.kind;
+  const bool turned = candidate_.kind == CorrectionKind::feed_direction;
+  c.kind = returning && !turned ? CorrectionKind::spindle_speed : candidate_.kind;
   const double speed = std::clamp(now.speed, limits.spindle.min_speed, limits.spindle.max_speed);
   c.spindle_speed_rpm = rad_s_to_rpm(speed);
   c.spindle_speed_target_rpm = rad_s_to_rpm(motion_.target().speed);
@@ -109,7 +113,7 @@ void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcep
   c.feed_override = c.kind == CorrectionKind::stop_request
                         ? keeps_feed * std::max(now.feed_factor, 0.0)
                         : std::clamp(keeps_feed * now.feed_factor, limits.min_feed_override, limits.max_feed_override);
-  c.feed_direction = now.feed_direction;
+  c.feed_direction = c.kind == CorrectionKind::feed_direction ? now.feed_direction : in.feed_direction;
   c.chatter_frequency_hz = chatter_frequency_hz_;
   c.predicted_margin_before = candidate_.margin_before;
   c.predicted_margin_after = candidate_.margin_after;
@@ -142,6 +146,7 @@ void Compensator::release(const CompensatorInputs& in, const char* reason, Outpu
   out.put(c);
   phase_ = Phase::none;
   act_until_ns_ = 0;
+  believed_since_ns_ = 0;
   candidate_ = {};
 }
 

@@ -111,6 +111,11 @@ void Core::add_robot_state(const RobotState& state) noexcept {
 }
 
 void Core::add_lobes(const LobeDiagram& diagram) noexcept {
+  if (diagram.ahead) {  // the newest announcement counts; it must not keep the diagrams of the posture waiting
+    next_ahead_ = diagram;
+    has_next_ahead_ = true;
+    return adopt_lobes(now_ns_);
+  }
   // The first that came waits its turn whatever comes after it; only the newest of a full row is replaced.
   next_lobes_count_ = std::min(next_lobes_count_ + 1, next_lobes_.size());
   waiting_lobes(next_lobes_count_ - 1) = diagram;
@@ -118,10 +123,14 @@ void Core::add_lobes(const LobeDiagram& diagram) noexcept {
 }
 
 void Core::adopt_lobes(std::int64_t now_ns) noexcept {
+  if (has_next_ahead_ && next_ahead_.usable_from_ns <= now_ns) {
+    lobes_ahead_ = next_ahead_;
+    has_next_ahead_ = false;
+  }
   std::size_t due = 0;
   while (due < next_lobes_count_ && waiting_lobes(due).usable_from_ns <= now_ns) ++due;
   if (due == 0) return;
-  for (std::size_t i = 0; i < due; ++i) (waiting_lobes(i).ahead ? lobes_ahead_ : lobes_) = waiting_lobes(i);
+  lobes_ = waiting_lobes(due - 1);
   first_lobes_ = (first_lobes_ + due) % next_lobes_.size();
   next_lobes_count_ -= due;
   update_prior();

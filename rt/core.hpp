@@ -82,8 +82,9 @@ class Core {
   Compensator compensator_;
   OutputQueue outputs_;
   CoreCounters counters_;
-  LobeDiagram lobes_;                         // the newest that may be used
-  LobeDiagram lobes_ahead_;                   // along the announced path
+  LobeDiagram lobes_;                     // the newest that may be used
+  LobeDiagram lobes_ahead_, next_ahead_;  // along the announced path; the one whose time has yet to come
+  bool has_next_ahead_ = false;
   std::array<LobeDiagram, 16> next_lobes_{};  // those whose time has yet to come, round and round from first_lobes_
   std::size_t first_lobes_ = 0, next_lobes_count_ = 0;
   double prior_margin_ = 0.0;  // that the monitor was last told; NaN unknown

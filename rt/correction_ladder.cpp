@@ -101,6 +101,18 @@ Rung direction_rung(const ChatterSituation& s, const Attempts& attempts, const C
   return rung;
 }
 
+// Why nothing better is left: no speed of the range, and where the path holds the feed no other direction.
+std::int32_t what_limits(const CompensationLimits& limits) noexcept {
+  return kNoStableSettingKnown | kLimitedBySpeedRange | (limits.free_turn > 0.0 ? 0 : kLimitedByPath);
+}
+
+// The speed as it is set; on the way through a dead zone that of the program, unless it is predicted worse.
+double speed_to_stay_at(const ChatterSituation& s, const CompensationLimits& limits) noexcept {
+  const double set = std::clamp(s.set_speed, limits.spindle.min_speed, limits.spindle.max_speed);
+  const bool worse = margin_at(s.prediction, s.programmed.speed) < margin_at(s.prediction, s.present.speed);
+  return may_stay_at(limits, set) || worse ? set : s.programmed.speed;
+}
+
 // Less feed does not move the limit; it makes the chips and with them the amplitude smaller, which a tool thrown about
 // by its own chatter follows.
 Rung feed_rung(const ChatterSituation& s, const Attempts& attempts, const CompensationLimits& limits) noexcept {
@@ -112,10 +124,10 @@ Rung feed_rung(const ChatterSituation& s, const Attempts& attempts, const Compen
   rung.candidate.kind = CorrectionKind::feed_override;
   rung.candidate.setting = s.present;
   rung.candidate.setting.variation_ratio = rung.candidate.setting.variation_hz = 0.0;
-  rung.candidate.setting.speed = std::clamp(s.present.speed, limits.spindle.min_speed, limits.spindle.max_speed);
+  rung.candidate.setting.speed = speed_to_stay_at(s, limits);
   rung.candidate.setting.feed_factor = std::max(least_by_tool, least_by_range);
   if (!(rung.candidate.setting.feed_factor < s.present.feed_factor - kLeastFeedGain)) return {};
-  rung.candidate.limited_by = kLimitedByFeedRange | kNoStableSettingKnown;
+  rung.candidate.limited_by = kLimitedByFeedRange | what_limits(limits);
   rung.candidate.margin_before = rung.candidate.margin_after = margin_at(s.prediction, s.present.speed);
   rung.candidate.confidence_percent = 20;
   return rung;
@@ -124,12 +136,12 @@ Rung feed_rung(const ChatterSituation& s, const Attempts& attempts, const Compen
 Candidate stop_candidate(const ChatterSituation& s, const Attempts& attempts,
                          const CompensationLimits& limits) noexcept {
   Candidate stop;
-  stop.limited_by = kNoStableSettingKnown;
+  stop.limited_by = what_limits(limits);
   stop.margin_before = stop.margin_after = margin_at(s.prediction, s.present.speed);
   if (!limits.may_stop || attempts.refused(CorrectionKind::stop_request)) return stop;
   stop.kind = CorrectionKind::stop_request;
   stop.setting = s.present;
-  stop.setting.speed = std::clamp(s.present.speed, limits.spindle.min_speed, limits.spindle.max_speed);
+  stop.setting.speed = speed_to_stay_at(s, limits);
   stop.setting.variation_ratio = stop.setting.variation_hz = 0.0;
   stop.setting.feed_factor = 0.0;
   stop.confidence_percent = 100;
@@ -145,8 +157,10 @@ Rung remembered_rung(const ChatterSituation& s, const Attempts& attempts, const 
                   [&](double speed) { return std::abs(speed - setting.speed) < 0.01 * speed; });
   const bool is_there = std::abs(setting.speed - s.present.speed) < kSameSpeedAsRemembered * s.present.speed;
   const double now = margin_at(s.prediction, s.present.speed), there = margin_at(s.prediction, setting.speed);
-  if (was_tried || is_there || attempts.refused(s.remembered->kind) || there <= now ||
-      !may_stay_at(limits, setting.speed) || s.remembered->kind != CorrectionKind::spindle_speed)
+  const bool predicted_worse = !std::isnan(now) && !(there > now && there > 0.0);
+  if (s.remembered->kind != CorrectionKind::spindle_speed || s.structural || s.deafened || was_tried || is_there ||
+      predicted_worse || attempts.refused(CorrectionKind::spindle_speed) || !may_stay_at(limits, setting.speed) ||
+      !keeps_feed_per_tooth(limits, setting.speed, s.programmed.speed))
     return {};
   Rung rung;
   rung.candidate.kind = s.remembered->kind;
@@ -165,7 +179,11 @@ bool is_some(const Rung& rung) noexcept { return rung.candidate.kind != Correcti
 }  // namespace
 
 void Attempts::add(const Candidate& candidate, double axial_depth) noexcept {
-  if (count_ < kMost) attempts_[count_++] = {candidate.kind, candidate.setting.speed, axial_depth};
+  const auto end = attempts_.begin() + static_cast<std::ptrdiff_t>(count_);
+  const bool known = std::any_of(attempts_.begin(), end, [&](const Attempt& a) {
+    return a.kind == candidate.kind && a.speed == candidate.setting.speed && !(axial_depth < a.axial_depth);
+  });
+  if (!known && count_ < kMost) attempts_[count_++] = {candidate.kind, candidate.setting.speed, axial_depth};
 }
 
 // Without a known depth what did not help does not help.
@@ -186,7 +204,7 @@ Attempts::Speeds Attempts::speeds(double axial_depth) const noexcept {
 
 Candidate next_candidate(const ChatterSituation& s, const Attempts& attempts,
                          const CompensationLimits& limits) noexcept {
-  if (s.patience_is_out) return stop_candidate(s, attempts, limits);
+  if (s.patience_is_out && !s.doubtful) return stop_candidate(s, attempts, limits);
   const Rung remembered = remembered_rung(s, attempts, limits);
   if (is_some(remembered)) return remembered.candidate;
   const Rung speed = speed_rung(s, attempts, limits);

@@ -64,7 +64,8 @@ struct ChatterSituation {
   bool deafened = false;              // the sensor is beyond its range: what is only better than now is not enough
   bool patience_is_out = false;       // it has chattered on for so long that only the last resort is left
   int teeth = 0;
-  CutSetting present;  // as it is now: measured speed, the feed and direction that are set
+  CutSetting present;      // as it is now: measured speed, the feed and direction that are set
+  double set_speed = 0.0;  // rad/s, the setpoint that the present speed follows; the mean of a swing
   CutSetting programmed;
   Prediction prediction;
   const Remembered* remembered = nullptr;  // that worked here before

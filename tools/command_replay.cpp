@@ -54,8 +54,8 @@ class RobotMessages {
         if (const auto diagram = predictor_.at(*state)) core.add_lobes(*diagram);
       } else if (const auto* ack = std::get_if<CorrectionAck>(&message)) {
         core.add_ack(*ack);
-      } else if (const auto diagram = predictor_.along(std::get<RobotPath>(message))) {
-        core.add_lobes(*diagram);
+      } else {
+        core.add_lobes(predictor_.along(std::get<RobotPath>(message)));
       }
     }
   }

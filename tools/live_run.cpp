@@ -131,7 +131,7 @@ void LiveRun::Parts::run_model(const std::stop_token& stop) {
       if (const auto diagram = predictor.at(newest_state.value())) channels->lobes.publish(*diagram);
     }
     if (newest_path.update()) {
-      if (const auto diagram = predictor.along(newest_path.value())) channels->ahead.publish(*diagram);
+      channels->ahead.publish(predictor.along(newest_path.value()));
     }
     std::this_thread::sleep_for(kPollModel);
   }

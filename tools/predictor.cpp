@@ -90,20 +90,18 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
   return last_;
 }
 
-std::optional<LobeDiagram> Predictor::along(const RobotPath& path) const {
+LobeDiagram Predictor::along(const RobotPath& path) const {
+  // A path without points, or one that cannot be predicted, takes back what was announced before.
+  LobeDiagram taken_back;
+  taken_back.ahead = true;
+  taken_back.usable_from_ns = path.stamp_ns + kUsableAfter_ns;
   std::optional<LobeDiagram> least;
-  if (path.count == 0) {  // takes back what was announced
-    least.emplace();
-    least->ahead = true;
-    least->usable_from_ns = path.stamp_ns + kUsableAfter_ns;
-    return least;
-  }
   for (const PathPoint& point : std::span{path.points}.first(path.count)) {
     Posture posture;
     posture.joints = point.joint_position;
     posture.position = point.tcp_position;
     const auto diagram = at_place(posture, point.feed_direction, point.milling, point.radial_depth, 0.0);
-    if (!diagram || !diagram->valid) return std::nullopt;
+    if (!diagram || !diagram->valid) return taken_back;
     if (!least) least = diagram;
     least->speed_scatter = std::max(least->speed_scatter, diagram->speed_scatter);
     least->depth_scatter = std::max(least->depth_scatter, diagram->depth_scatter);
@@ -112,12 +110,12 @@ std::optional<LobeDiagram> Predictor::along(const RobotPath& path) const {
       if (std::isnan(b.depth_limit) || b.depth_limit < a.depth_limit) least->points[i] = b;
     }
   }
-  if (!least) return std::nullopt;
+  if (!least) return taken_back;
   least->ahead = true;
   least->posture_stamp_ns = path.stamp_ns;
   least->usable_from_ns = path.stamp_ns + static_cast<std::int64_t>(path.count + 1) * kUsableAfter_ns;
   least->usable_until_ns = path.stamp_ns + static_cast<std::int64_t>(path.points[path.count - 1].after * 1e9);
-  return least;
+  return *least;
 }
 
 // A diagram for an immersion or posture that cannot be is none: no diagram is better than a wrong one.

@@ -49,9 +49,9 @@ class Predictor {
   // same frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
   [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
 
-  // For an announced path: at every speed the least limit of its points; an invalid diagram for a path without points.
-  // Nothing where a point cannot be predicted.
-  [[nodiscard]] std::optional<LobeDiagram> along(const RobotPath& path) const;
+  // For an announced path: at every speed the least limit of its points; an invalid diagram, which takes back what was
+  // announced before, for a path without points or with one that cannot be predicted.
+  [[nodiscard]] LobeDiagram along(const RobotPath& path) const;
 
  private:
   [[nodiscard]] std::string slow_fit_warning() const;  // empty: none

@@ -5,7 +5,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kSecondsAMinute = 60.0;
-constexpr Bounds kFeedPerToothMm = above(0, 100), kCuttingSpeed = above(0, 1e5), kRpm = above(0, 1e6);
+constexpr Bounds kFeedPerToothMm = from(0, 100), kCuttingSpeed = from(0, 1e5), kRpm = above(0, 1e6);
 
 // Two keys that bound one quantity; the upper must be above the lower.
 std::pair<double, double> read_window(TomlSection& section, const char* low_key, const char* high_key,

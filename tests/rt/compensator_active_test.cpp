@@ -38,7 +38,7 @@ TEST(Compensator, ActiveGivesUpAfterASecondWithoutAnAnswer) {
   EXPECT_LE(bench.corrections.back().stamp_ns - bench.corrections.front().stamp_ns, kSecond + 4 * kMillisecond);
   EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::release);
   const std::size_t before = bench.corrections.size();
-  bench.run(0.1, quiet(0));
+  bench.run(2.1, quiet(0));
   bench.run(0.1, chattering(0));  // a new episode is a new question
   EXPECT_GT(bench.corrections.size(), before);
 }
@@ -51,7 +51,7 @@ TEST(Compensator, ActiveRefusedStaysQuietUntilTheEpisodeEnds) {
   bench.run(5.0, chattering(0));
   EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::release);
   EXPECT_EQ(bench.releases(), 1);
-  bench.run(0.1, quiet(0));
+  bench.run(2.1, quiet(0));
   bench.run_acknowledged(0.1, chattering(0));
   EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
 }
@@ -285,6 +285,74 @@ TEST(Compensator, ReturnsSlowlyWhenTheReasonIsGoneAndNotASecondTimeInVain) {
     EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
     EXPECT_EQ(bench.releases(), 0);
   }
+}
+
+// What is left of chatter is tolerated, but not that it grows back.
+TEST(Compensator, AResidueThatGrowsBackIsAnsweredAgain) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  MonitorView view = chattering(0);
+  bench.run_acknowledged(0.5, view);
+  view.chatter_amplitude = 0.8;  // of 10 m/s^2
+  bench.run_acknowledged(5.0, view);
+  EXPECT_EQ(bench.targets_rpm().size(), 1U);  // held
+  for (int i = 0; i < 400; ++i) {
+    view.chatter_amplitude *= 1.01;
+    bench.run_acknowledged(0.002, view);
+  }
+  EXPECT_GE(bench.targets_rpm().size(), 2U);
+}
+
+// A faint line that the lobes contradict is no reason to give a pocket up, however long it lasts, nor to stop.
+TEST(Compensator, AFaintLineAgainstThePredictionMovesNothingFromItsPocket) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  std::vector<double> limits_mm(61, 0.5);
+  for (std::size_t i = 10; i < 20; ++i) limits_mm[i] = 4.0;
+  const LobeDiagram lobes = diagram_of(limits_mm, spindle_6000_to_12000());
+  bench.in.lobes = &lobes;
+  bench.run_acknowledged(0.5, chattering(0));
+  const double target = bench.corrections.back().spindle_speed_target_rpm;
+  bench.run_acknowledged(3.0, quiet(0, State::cut, target));
+  MonitorView faint = chattering(0, 738.0, target);
+  faint.indicator = 1.5;
+  bench.run_acknowledged(30.0, faint);
+  EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
+  EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
+  EXPECT_EQ(bench.releases(), 0);
+}
+
+// What was never believed costs no patience: the first answer to chatter is not a stop.
+TEST(Compensator, PatienceBeginsWithTheFirstAnswer) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  LobeDiagram lobes = diagram_of(std::vector<double>(61, 0.5), spindle_6000_to_12000());
+  for (std::size_t i = 10; i < 20; ++i) lobes.points[i].depth_limit = 4e-3;
+  lobes.mode_count = 1;
+  lobes.modes[0] = {738.0, 0.02};
+  bench.in.lobes = &lobes;
+  MonitorView elsewhere = quiet(0);  // a slow line at no mode
+  elsewhere.structural = true;
+  elsewhere.structural_frequency_hz = 16.0;
+  bench.run_acknowledged(8.0, elsewhere);
+  EXPECT_TRUE(bench.corrections.empty());
+  MonitorView both = chattering(0);
+  both.structural = true;
+  both.structural_frequency_hz = 16.0;
+  bench.run_acknowledged(0.5, both);
+  ASSERT_FALSE(bench.corrections.empty());
+  EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
+}
+
+TEST(Compensator, AnotherProgrammedSpeedEndsTheCorrection) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  bench.run_acknowledged(0.5, chattering(0));
+  ASSERT_TRUE(bench.compensator().correcting());
+  bench.in.nominal_speed = rpm_to_rad_s(6500);
+  bench.run_acknowledged(0.1, quiet(0));
+  EXPECT_FALSE(bench.compensator().correcting());
+  EXPECT_EQ(bench.releases(), 1);
 }
 
 // Chatter of the structure: no n_k, but the speeds and directions that the lobes call stable.
