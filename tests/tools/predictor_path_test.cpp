@@ -57,55 +57,54 @@ class PredictorPath : public ::testing::Test {
 TEST_F(PredictorPath, AlongAPathTheLeastLimitOfItsPointsCountsAtEverySpeed) {
   Predictor predictor{cell_};
   const std::initializer_list<double> shares{0.1, 0.5, 0.9};
-  const auto along = predictor.along(path_over(shares));
-  ASSERT_TRUE(along && along->valid);
+  const LobeDiagram along = predictor.along(path_over(shares));
+  ASSERT_TRUE(along.valid);
   std::vector<LobeDiagram> each;
   for (const double share : shares) each.push_back(predictor.at(robot_at(share)).value());
   int of_first = 0, of_last = 0;
-  ASSERT_EQ(along->point_count, each[0].point_count);
-  for (int i = 0; i < along->point_count; ++i) {
-    const double speed = along->points[static_cast<std::size_t>(i)].speed;
+  ASSERT_EQ(along.point_count, each[0].point_count);
+  for (int i = 0; i < along.point_count; ++i) {
+    const double speed = along.points[static_cast<std::size_t>(i)].speed;
     double least = kInfinity;
     for (const LobeDiagram& diagram : each) least = std::min(least, depth_limit_at(diagram, speed));
-    EXPECT_EQ(depth_limit_at(*along, speed), least) << i;
+    EXPECT_EQ(depth_limit_at(along, speed), least) << i;
     of_first += depth_limit_at(each[0], speed) == least ? 1 : 0;
     of_last += depth_limit_at(each[2], speed) == least ? 1 : 0;
   }
   EXPECT_GT(of_first + of_last, 0);
-  EXPECT_LT(std::max(of_first, of_last), along->point_count) << of_first << ' ' << of_last;  // no point alone decides
+  EXPECT_LT(std::max(of_first, of_last), along.point_count) << of_first << ' ' << of_last;  // no point alone decides
   for (const LobeDiagram& diagram : each) {
-    EXPECT_GE(along->speed_scatter, diagram.speed_scatter);
-    EXPECT_GE(along->depth_scatter, diagram.depth_scatter);
+    EXPECT_GE(along.speed_scatter, diagram.speed_scatter);
+    EXPECT_GE(along.depth_scatter, diagram.depth_scatter);
   }
 }
 
 TEST_F(PredictorPath, AlongAPathItIsUsableFromSoonUntilThePathEnds) {
-  const auto along = Predictor{cell_}.along(path_over({0.2, 0.4}));
-  ASSERT_TRUE(along.has_value());
-  EXPECT_TRUE(along->ahead);
-  EXPECT_GT(along->usable_from_ns, kHeard);
-  EXPECT_LT(along->usable_from_ns, kHeard + 1'000'000'000);
-  EXPECT_EQ(along->usable_until_ns, kHeard + 1'500'000'000);
+  const LobeDiagram along = Predictor{cell_}.along(path_over({0.2, 0.4}));
+  EXPECT_TRUE(along.ahead);
+  EXPECT_GT(along.usable_from_ns, kHeard);
+  EXPECT_LT(along.usable_from_ns, kHeard + 1'000'000'000);
+  EXPECT_EQ(along.usable_until_ns, kHeard + 1'500'000'000);
   EXPECT_FALSE(Predictor{cell_}.at(robot_at(0.2))->ahead);
 }
 
 TEST_F(PredictorPath, APathWithoutPointsTakesBackWhatWasAnnounced) {
-  const auto none = Predictor{cell_}.along(path_over({}));
-  ASSERT_TRUE(none.has_value());
-  EXPECT_TRUE(none->ahead);
-  EXPECT_FALSE(none->valid);
-  EXPECT_GT(none->usable_from_ns, kHeard);
+  const LobeDiagram none = Predictor{cell_}.along(path_over({}));
+  EXPECT_TRUE(none.ahead);
+  EXPECT_FALSE(none.valid);
+  EXPECT_GT(none.usable_from_ns, kHeard);
 }
 
 TEST_F(PredictorPath, APathWithAPointThatCannotBePredictedGivesNothing) {
   const Predictor predictor{cell_};
   RobotPath too_wide = path_over({0.2, 0.4, 0.6});
   too_wide.points[1].radial_depth = 3.0 * cell_.tool->diameter;
-  EXPECT_FALSE(predictor.along(too_wide).has_value());
+  EXPECT_FALSE(predictor.along(too_wide).valid);
   RobotPath far_away = path_over({0.2, 0.4, 0.6});
   for (double& joint : far_away.points[2].joint_position) joint += 2.0;
   for (double& coordinate : far_away.points[2].tcp_position) coordinate += 20.0;
-  EXPECT_FALSE(predictor.along(far_away).has_value());
+  EXPECT_FALSE(predictor.along(far_away).valid);
+  EXPECT_TRUE(predictor.along(far_away).ahead);  // takes back what was announced before
 }
 
 // The limits over direction are those that the lobes have where the feed goes there.

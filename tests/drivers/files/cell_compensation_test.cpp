@@ -110,7 +110,7 @@ const std::vector<WrongKey> kWrongKeys{
     {"avoid_rpm = [[3000, \"x\"]]", "avoid_rpm", "is text"},
     {"avoid_rpm = [[1,2],[1,2],[1,2],[1,2],[1,2],[1,2],[1,2],[1,2],[1,2]]", "avoid_rpm",
      "has more than 8 pairs; join those that lie close together"},
-    {"min_cutting_speed_m_per_min = 0", "min_cutting_speed_m_per_min", "0 is out of range"},
+    {"min_cutting_speed_m_per_min = -1", "min_cutting_speed_m_per_min", "-1 is out of range"},
     {"max_cutting_speed_m_per_min = inf", "max_cutting_speed_m_per_min", "inf is out of range"},
     {"min_feed_per_tooth_mm = -0.1", "min_feed_per_tooth_mm", "-0.1 is out of range"},
     {"max_feed_per_tooth_mm = 101", "max_feed_per_tooth_mm", "101 is out of range"},
