@@ -13,7 +13,7 @@ folder=$(dirname "$cell")
 cp -r "$folder" "$work/cell"
 sed -e 's/^bus = .*/bus = "log:cut.log"/' "$cell" > "$work/cell/live.toml"
 printf '\n[lcm]\nurl = "memq://"\n' >> "$work/cell/live.toml"
-"$programs/stillcut" simulate "$cell" --duration 11 --can "$work/cell/cut.log" \
+"$programs/stillcut" simulate "$cell" --duration 13 --can "$work/cell/cut.log" \
   --depth 0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,9:3.6,9.1:0 > /dev/null || fail 'no cut to play'
 
 cd "$work"
