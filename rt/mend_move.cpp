@@ -20,10 +20,10 @@ struct Misses {
   double velocity_first = 0.0, velocity_second = 0.0, distance_first = 0.0, distance_second = 0.0;
 };
 
-struct State {
+struct Condition {
   double p = 0.0, v = 0.0;
 };
-void advance(State& s, double a, double jerk, double t) noexcept {
+void advance(Condition& s, double a, double jerk, double t) noexcept {
   s.p += t * (s.v + t * (a / 2 + t * jerk / 6));
   s.v += t * (a + t * jerk / 2);
 }
@@ -31,7 +31,7 @@ void advance(State& s, double a, double jerk, double t) noexcept {
 Misses misses_of(const AxisMove& move, double side, const Durations& t) noexcept {
   const double a0 = side * move.a0, af = side * move.af, v0 = side * move.v0;
   const double fall = t.rise + t.settle + (a0 - af), peak = a0 + t.rise, trough = af - t.settle;
-  State s;  // velocity above v0
+  Condition s;  // velocity above v0
   advance(s, a0, 1.0, t.rise);
   const double after_rise = v0 + s.v;
   advance(s, peak, 0.0, t.peak_hold);
