@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 
+#include "adapters/correction_intake.hpp"
 #include "adapters/exchange_log.hpp"
 #include "adapters/lcm_link.hpp"
 #include "adapters/udp_port.hpp"
@@ -52,7 +53,7 @@ class UdpAdapterLoop {
   bool turn() {
     const UdpPort::Packet packet = port_.receive(kWait_ms);
     const std::int64_t now = steady_ns();
-    take_corrections(now);
+    take_corrections(link_, recorder_, adapter_, complaints_);
     if (packet.bytes.empty()) return false;
     if (!peer_.serves(packet.from, now)) {
       ++wire_.strangers;
@@ -60,7 +61,7 @@ class UdpAdapterLoop {
     }
     recorder_.put(now, ExchangeKind::packet, text_of(packet.bytes));
     const PacketOutput output = adapter_.packet(packet.bytes, now);
-    if (output.why_not != nullptr) complain(output.why_not, now);
+    if (output.why_not != nullptr) complaints_.say(output.why_not, now);
     if (output.answer.empty()) return corrected_;
     peer_.heard(packet.from, now);
     port_.send(packet.from, output.answer);
@@ -89,24 +90,8 @@ class UdpAdapterLoop {
   }
 
  private:
-  void take_corrections(std::int64_t now) {
-    HeardCorrection heard;
-    while (link_.next(heard)) {
-      recorder_.put(heard.received_ns, heard.correction);
-      const auto answer = adapter_.receive(heard.correction, heard.received_ns);
-      if (!answer) continue;
-      link_.say(*answer);
-      recorder_.put(heard.received_ns, *answer);
-      if (!answer->ack.accepted) complain(answer->reason.data(), now);
-    }
-  }
-  void complain(const char* what, std::int64_t now) {
-    if (now < complain_again_ns_) return;
-    complain_again_ns_ = now + kComplainEvery_ns;
-    spdlog::warn("refused: {}", what);
-  }
-
-  std::int64_t cycle_ns_, complain_again_ns_ = 0;
+  std::int64_t cycle_ns_;
+  Complaints complaints_;
   bool corrected_ = false;
   ExchangeRecorder recorder_;
   PacketAdapter adapter_;

@@ -10,8 +10,7 @@
 
 namespace stillcut {
 
-inline constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;  // of refusals in the log
-inline constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;    // for the way back to the program
+inline constexpr std::int64_t kLongestEnd_ns = 20'000'000'000;  // for the way back to the program
 
 // SIGINT and SIGTERM, kept from killing the process: asked for instead. Make it before any thread.
 class EndSignal {

@@ -6,6 +6,7 @@
 
 #include "adapters/adapter_options.hpp"
 #include "adapters/adapter_run.hpp"
+#include "adapters/correction_intake.hpp"
 #include "adapters/exchange_log.hpp"
 #include "adapters/lcm_link.hpp"
 #include "adapters/linuxcnc_adapter.hpp"
@@ -52,7 +53,7 @@ class LinuxCncLoop {
       if (ends_ns > 0 && (adapter_.farewell().empty() || steady_ns() > ends_ns || end.came_again())) break;
       const std::optional<std::string> line = lines.next(kWaitForLine_ms);
       const std::int64_t now = steady_ns();
-      take_corrections();
+      take_corrections(link_, recorder_, adapter_, complaints_);
       const CncOutput output = adapter_.line(line.value_or(""), now);
       record(line.value_or(""), output, now);
       if (!output.send.empty()) lines.send(output.send);
@@ -74,19 +75,6 @@ class LinuxCncLoop {
   }
 
  private:
-  void take_corrections() {
-    HeardCorrection heard;
-    while (link_.next(heard)) {
-      recorder_.put(heard.received_ns, heard.correction);
-      const auto answer = adapter_.receive(heard.correction, heard.received_ns);
-      if (!answer) continue;
-      link_.say(*answer);
-      recorder_.put(heard.received_ns, *answer);
-      if (answer->ack.accepted || heard.received_ns < refusal_said_ns_ + kComplainEvery_ns) continue;
-      refusal_said_ns_ = heard.received_ns;
-      spdlog::warn("refused: {}", answer->reason.data());
-    }
-  }
   // An empty line stands for time that has passed: kept where it led to something.
   void record(std::string_view line, const CncOutput& output, std::int64_t now) {
     if (line.empty() && output.send.empty() && !output.state) return;
@@ -95,7 +83,7 @@ class LinuxCncLoop {
     if (output.state) recorder_.put(now, *output.state);
   }
 
-  std::int64_t refusal_said_ns_ = 0;
+  Complaints complaints_;
   bool complained_ = false, ended_ = false;
   ExchangeRecorder recorder_;
   LinuxCncAdapter adapter_;

@@ -46,13 +46,12 @@ ShortText describe_candidate(const Candidate& c) noexcept {
 
 void Compensator::start(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept {
   const MonitorView& heard = *in.monitor;
-  const ChatterSituation now = situation(in);
   if (!correcting()) {
     begin_motion(in);
     loudest_ = 0.0;
     answered_ns_ = in.now_ns;
     chatter_depth_ = in.axial_depth;
-    chatter_margin_ = margin_at(now.prediction, programmed_.speed);
+    chatter_margin_ = margin_at(coming_prediction(in), programmed_.speed);
   }
   if (!motion_.move_to(candidate.setting, motion_time(in.now_ns), settings_.limits, 1.0)) return;
   first_sequence_ = sequence_ + 1;

@@ -55,6 +55,14 @@ double predicted_frequency(const LobeDiagram& diagram, double speed) noexcept {
   return std::abs(a - b) <= kSameFrequency * a ? 0.5 * (a + b) : kNaN;
 }
 
+bool is_near(double heard_hz, double hz, double share) noexcept { return std::abs(heard_hz - hz) < share * hz; }
+
+bool near_a_mode(const LobeDiagram& diagram, double heard_hz, double share) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
+  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count,
+                     [&](const ModeSummary& mode) { return is_near(heard_hz, mode.frequency_hz, share); });
+}
+
 }  // namespace
 
 double margin_at(const Prediction& p, double speed) noexcept {
@@ -81,18 +89,12 @@ double base_frequency(const LobeDiagram& diagram, double speed, int teeth, doubl
 }
 
 bool is_at_a_mode(const LobeDiagram& diagram, double heard_hz) noexcept {
-  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
-  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count, [&](const ModeSummary& mode) {
-    return std::abs(heard_hz - mode.frequency_hz) < kAboutAMode * mode.frequency_hz;
-  });
+  return near_a_mode(diagram, heard_hz, kAboutAMode);
 }
 
 bool explains(const LobeDiagram& diagram, double speed, double heard_hz) noexcept {
-  const auto near = [&](double hz) { return std::abs(heard_hz - hz) < kOtherFrequency * hz; };
-  if (near(predicted_frequency(diagram, speed))) return true;
-  const auto count = static_cast<std::ptrdiff_t>(std::clamp(diagram.mode_count, 0, LobeDiagram::kMaxModes));
-  return std::any_of(diagram.modes.begin(), diagram.modes.begin() + count,
-                     [&](const ModeSummary& mode) { return near(mode.frequency_hz); });
+  return is_near(heard_hz, predicted_frequency(diagram, speed), kOtherFrequency) ||
+         near_a_mode(diagram, heard_hz, kOtherFrequency);
 }
 
 }  // namespace stillcut

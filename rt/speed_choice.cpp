@@ -23,7 +23,7 @@ constexpr double kLeastDamping = 1e-4, kUsualDamping = 0.02,
                  kUsualFrequency_hz = 500.0;                      // of what vibrates, where nothing is known
 constexpr double kLeastSafeMargin = 0.02, kMostSafeMargin = 1.0;  // beyond these an estimate of decay says nothing
 
-struct Candidate {
+struct SpeedCandidate {
   double target = 0.0;
   int lobe = 0;
   bool beside = false;  // the lobe's n_k
@@ -94,7 +94,7 @@ class Search {
       }
   }
   // The grounds on which it may be chosen, whether or not it is the best.
-  SpeedGrounds consider(const Candidate& candidate) noexcept {
+  SpeedGrounds consider(const SpeedCandidate& candidate) noexcept {
     constexpr SpeedGrounds kNone = SpeedGrounds::none;
     const double target = candidate.target;
     if (!may_stay_at(limits_, target) || !keeps_feed_per_tooth(limits_, target, q_.programmed_speed)) return kNone;
