@@ -141,7 +141,7 @@ void Monitor::finish_hop(std::size_t index, std::int64_t stamp_ns, double step_s
     doubt_s_ = 0.0;
     if (index == chatter_sensor_) follow_chatter(stamp_ns, step_s);
   } else if (able) {
-    look_for_onset(index, stamp_ns);
+    look_for_onset(index, stamp_ns, step_s);
   }
   if (sensor.path.take_slow_step()) listen_to_structure(index, stamp_ns, trusted);
   for (Sensor& each : sensors_) {

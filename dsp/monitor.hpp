@@ -93,12 +93,18 @@ class Monitor {
     std::int64_t since_ns = 0;
   };
 
+  struct Unrepeated {     // power of what does not repeat with the spindle
+    double usual = 0.0;   // (m/s^2)^2
+    double loud_s = 0.0;  // how long it has been far over that, and over what repeats
+  };
+
   void finish_hop(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
-  void look_for_onset(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  void look_for_onset(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   bool add_evidence(Suspect& suspect, const Suspect& heard, const Tone& tone, double bin_hz,
                     std::int64_t stamp_ns) const noexcept;
   [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
   bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  bool look_for_unrepeated_chatter(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   void follow_orders(std::size_t sensor, bool trusted) noexcept;
   void follow_decay(std::size_t sensor, bool able) noexcept;
   void look_for_forced_vibration(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
@@ -151,6 +157,7 @@ class Monitor {
   std::array<double, kDoubtCount> clear_for_s_{};
   std::array<Suspect, kMaxSensors> suspect_{}, standing_{};
   std::array<int, kMaxSensors> wild_hops_{};
+  std::array<Unrepeated, kMaxSensors> unrepeated_{};
   // The order that was told as forced vibration on a mode; 0: none.
   int forced_order_ = 0;
   double until_forced_s_ = 0.0;  // it is looked for again

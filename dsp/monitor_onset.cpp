@@ -25,10 +25,15 @@ constexpr double kFallToDoubt = 3.0, kRiseToDoubt = 1.5, kDoubtAsks = 2.0, kNewC
 // A tool that is thrown about leaves no single line: all bins stand far over their floors, for a tenth of a second.
 constexpr double kWild = 12.0;
 constexpr int kWildHops = 32;
+// Tool chatter at a few hundred revolutions a minute rings anew with every tooth, and no line of it stands in a short
+// window. But it does not repeat, so its power outgrows that of what does: over these ratios of power, for so long.
+constexpr double kOverUsual = 30.0, kOverRepeating = 4.0, kUnrepeated_s = 0.15, kUnrepeatedRevolutions = 8.0;
+constexpr double kRevolutionsToRepeat = 16.0;  // of constant speed and contact, until all that repeats is known
+constexpr double kUsualMemory_s = 2.0, kUsualClip = 4.0;
 
 }  // namespace
 
-void Monitor::look_for_onset(std::size_t index, std::int64_t stamp_ns) noexcept {
+void Monitor::look_for_onset(std::size_t index, std::int64_t stamp_ns, double step_s) noexcept {
   const SensorPath& path = sensors_[index].path;
   Suspect& suspect = suspect_[index];
   view_.indicator = 0.0;
@@ -59,6 +64,7 @@ void Monitor::look_for_onset(std::size_t index, std::int64_t stamp_ns) noexcept 
   if (suspect.evidence <= 0.0) suspect.line = Line::nothing;
   view_.indicator = std::sqrt(strongest);
   if (look_for_growing_order(index, stamp_ns) || look_for_wild_chatter(index, stamp_ns)) return;
+  if (look_for_unrepeated_chatter(index, stamp_ns, step_s)) return;
   look_for_standing_chatter(index, stamp_ns);
 }
 
@@ -99,6 +105,34 @@ bool Monitor::look_for_wild_chatter(std::size_t index, std::int64_t stamp_ns) no
   const Tone tone = analyse_tone(path.watch().window(loudest.axis), path.sample_rate_hz(), loudest.frequency_hz);
   if (of_forced(path, tone) < kLeastOfForced) return false;
   wild_hops_[index] = 0;
+  suspect_[index].line = Line::wild;
+  begin_chatter(index, stamp_ns, loudest, tone);
+  return true;
+}
+
+bool Monitor::look_for_unrepeated_chatter(std::size_t index, std::int64_t stamp_ns, double step_s) noexcept {
+  const SensorPath& path = sensors_[index].path;
+  Unrepeated& heard = unrepeated_[index];
+  const double power = path.residual_level() * path.residual_level();
+  const double repeated = path.synchronous_level() * path.synchronous_level();
+  const bool known = gate_.state() == State::cut && steady_s_ * spindle_hz() > kRevolutionsToRepeat;
+  const double over = known && power > kOverUsual * heard.usual ? power / std::max(repeated, 1e-30) : 0.0;
+  if (over > kOverRepeating) heard.loud_s += step_s;
+  if (over < 0.5 * kOverRepeating) heard.loud_s = std::max(0.0, heard.loud_s - 2.0 * step_s);
+  const double gain = heard.usual > 0.0 ? step_s / kUsualMemory_s : 1.0;
+  heard.usual += gain * ((heard.usual > 0.0 ? std::min(power, kUsualClip * heard.usual) : power) - heard.usual);
+  if (heard.loud_s < std::max(kUnrepeated_s, kUnrepeatedRevolutions / spindle_hz())) return false;
+  LineCandidate loudest = path.watch().loudest_near_modes();
+  if (loudest.frequency_hz > 0.0) {
+    loudest.ratio = path.watch().ratio_at(loudest.frequency_hz);
+  } else if (!path.watch().candidates().empty()) {
+    loudest = path.watch().candidates().front();
+  } else {
+    return false;
+  }
+  const Tone tone = analyse_tone(path.watch().window(loudest.axis), path.sample_rate_hz(), loudest.frequency_hz);
+  if (of_forced(path, tone) < kLeastOfForced) return false;
+  heard.loud_s = 0.0;
   suspect_[index].line = Line::wild;
   begin_chatter(index, stamp_ns, loudest, tone);
   return true;

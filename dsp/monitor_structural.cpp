@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kStructuralRelease = 0.25;  // of the limit in power
 constexpr double kCyclesToEnd = 3.0;
-constexpr double kOfOrder = 0.3;         // of the line's frequency: nearer to an order, its window hears that as well
+constexpr double kOfOrder = 0.3;  // of the line's frequency: nearer to an order, its window hears that as well
+// Once the orders are known and taken out, a mode of the map may be heard beside one; it has to last.
+constexpr double kBesideOrder = 0.06, kOnMode = 0.12, kBesideOrderAsks = 2.0, kRevolutionsToTell = 24.0;
 constexpr double kNearStructure = 0.25;  // of a mode's frequency
 constexpr double kFallToDoubtStructure = 8.0, kDoubtfulAsks = 2.0, kNoMapAsks = 2.0, kUnexpectedAsks = 3.0;
 
@@ -29,11 +31,18 @@ void Monitor::listen_to_structure(std::size_t index, std::int64_t stamp_ns, bool
     slow.forget_evidence();
     return;
   }
-  const SlowLine line = slow.best_line([turns_hz = spindle_hz()](double hz) {
-    const double order_hz = turns_hz * std::max(1.0, std::round(hz / turns_hz));
-    return std::abs(hz - order_hz) > kOfOrder * hz;
-  });
-  if (line.evidence < structural_evidence_asked(sensors_[index].path, line.frequency_hz)) return;
+  const double turns_hz = spindle_hz();
+  const auto from_order = [turns_hz](double hz) {
+    return std::abs(hz - turns_hz * std::max(1.0, std::round(hz / turns_hz))) / hz;
+  };
+  SlowLine line = slow.best_line([&](double hz) { return from_order(hz) > kOfOrder; });
+  double asked = 1.0;
+  if (!(line.evidence > 0.0) && steady_s_ * turns_hz > kRevolutionsToTell) {
+    line =
+        slow.best_line([&](double hz) { return from_order(hz) > kBesideOrder && near_a_mode(modes(), hz, kOnMode); });
+    asked = kBesideOrderAsks;
+  }
+  if (line.evidence < asked * structural_evidence_asked(sensors_[index].path, line.frequency_hz)) return;
   view_.structural = true;
   view_.structural_frequency_hz = line.frequency_hz;
   structural_sensor_ = index;

@@ -115,6 +115,9 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   }
   for (std::size_t i = 0; i < n; ++i) slow[i] = slow_sample_ = where_finite(x[i], slow[i], slow_sample_);
   if (slow_.push(slow)) slow_stepped_ = true;
+  Lanes power;
+  for (std::size_t i = 0; i < n; ++i) power += residual[i] * residual[i];
+  hop_residual_ += sum(power);
   hop_complete_ = watch_.push(residual);
   if (hop_complete_) update_level(revolution_s);
   return to;
@@ -122,15 +125,20 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
 
 void SensorPath::update_level(double revolution_s) noexcept {
   newest_power_ = (newest_power_ + 1) % kLevelHops;
-  powers_[newest_power_] = hop_power_;
-  hop_power_ = 0.0;
+  powers_[newest_power_] = std::exchange(hop_power_, 0.0);
+  residual_powers_[newest_power_] = std::exchange(hop_residual_, 0.0);
   const double hop_s = watch_.hop_length() / rate_;
   const double wanted = std::ceil(std::max(kLevelSpan_s, 3.0 * revolution_s) / hop_s);
   const auto hops = static_cast<std::size_t>(std::min(wanted, double{kLevelHops}));
-  double whole = 0.0;
-  for (std::size_t h = 0; h < hops; ++h) whole += powers_[(newest_power_ + kLevelHops - h) % kLevelHops];
+  double whole = 0.0, residual = 0.0;
+  for (std::size_t h = 0; h < hops; ++h) {
+    const std::size_t at = (newest_power_ + kLevelHops - h) % kLevelHops;
+    whole += powers_[at];
+    residual += residual_powers_[at];
+  }
   update_changes(revolution_s);
   level_ = std::sqrt(whole / (static_cast<double>(hops) * watch_.hop_length()));
+  residual_level_ = std::sqrt(residual / (static_cast<double>(hops) * watch_.hop_length()));
   synchronous_level_ = revolution_s > 0.0 ? filter_.level() : level_;
 }
 

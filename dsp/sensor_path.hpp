@@ -41,6 +41,8 @@ class SensorPath {
   [[nodiscard]] double level() const noexcept { return level_; }
   // The same of what repeats with the spindle alone.
   [[nodiscard]] double synchronous_level() const noexcept { return synchronous_level_; }
+  // The same of what does not repeat.
+  [[nodiscard]] double residual_level() const noexcept { return residual_level_; }
 
   // The largest fall and rise of power, from one revolution to any later one, within the last quarter of a second, as
   // ratios. After a fall the tool has left the cut for a moment, or a knock has died out; after a rise it may have
@@ -88,10 +90,10 @@ class SensorPath {
   // What the stages hand on to each other.
   std::array<double, kMaxSamplesPerBlock> angles_{};
   std::array<Lanes, kMaxSamplesPerBlock> x_{}, residual_{}, without_orders_{};
-  double hop_power_ = 0.0;                   // sum of squares in the present hop
-  std::array<double, kLevelHops> powers_{};  // of the last hops, a ring
+  double hop_power_ = 0.0, hop_residual_ = 0.0;                  // sums of squares in the present hop
+  std::array<double, kLevelHops> powers_{}, residual_powers_{};  // of the last hops, rings
   std::size_t newest_power_ = 0;
-  double level_ = 0.0, synchronous_level_ = 0.0, fall_ = 1.0, rise_ = 1.0;
+  double level_ = 0.0, synchronous_level_ = 0.0, residual_level_ = 0.0, fall_ = 1.0, rise_ = 1.0;
   std::int64_t samples_ = 0;                               // processed so far
   std::array<std::int64_t, kDoubtCount> doubted_until_{};  // the sample at which each doubt has left the window
   bool hop_complete_ = false, slow_stepped_ = false, table_changed_ = false;

@@ -10,11 +10,11 @@ namespace {
 constexpr double kThinned_hz = 500.0;
 constexpr double kLowest_hz = 4.0, kBandRatio = 1.0905077;  // an eighth of an octave
 constexpr double kCycles = 2.0;                             // of the window
-constexpr double kNoiseMemory_s = 2.0;
+constexpr double kNoiseFalls_s = 2.0, kNoiseRises_s = 4.0;
 // Power over that of noise in a band of that width: the fewer axes, the more does noise alone vary.
 constexpr std::array<double, kMaxAxes> kNoiseLimit{24.0, 16.0, 12.0};
 constexpr double kSlowLimit = 3.0;  // power over the band's own floor
-constexpr double kSlowFloorMemory_s = 1.0, kSlowFloorClip = 4.0, kSlowFloorLearns_s = 0.4;
+constexpr double kSlowFloorMemory_s = 1.0, kAloneFloorMemory_s = 8.0, kSlowFloorClip = 4.0, kSlowFloorLearns_s = 0.4;
 constexpr double kLeastStanding = 0.985, kLeastGrowth = 1.03, kMostGrowth = 2.0;  // a cycle; more: a window that fills
 constexpr double kCyclesToGrow = 0.75, kSecondsToGrow = 0.05;  // beyond the two windows that show it: the longer
 constexpr double kFast_hz = 20.0;
@@ -128,7 +128,8 @@ void SlowWatch::finish_step() noexcept {
   for (int b = 0; b < kBands; ++b) density[b] = bands_[b].power / bands_[b].frequency_hz;
   std::nth_element(density.begin(), density.begin() + kBands * 2 / 5, density.end());
   const double now = density[kBands * 2 / 5];
-  noise_ += std::max(step_s() / kNoiseMemory_s, 1.0 / static_cast<double>(steps_)) * (now - noise_);
+  const double memory_s = now > noise_ ? kNoiseRises_s : kNoiseFalls_s;
+  noise_ += std::max(step_s() / memory_s, 1.0 / static_cast<double>(steps_)) * (now - noise_);
   for (Band& band : bands_) judge(band);
 }
 
@@ -157,7 +158,9 @@ void SlowWatch::listen(Band& band) noexcept {
     band.power += std::norm(now[a]);
   }
   const double learned = 1.0 / static_cast<double>(std::max(1L, floor_steps_));
-  const double gain = floor_held_ ? 0.0 : std::max(step_s() / kSlowFloorMemory_s, learned);
+  // A line that stands alone may be chatter that grows slowly: its floor must not grow along.
+  const double memory_s = band.alone && band.power > band.floor ? kAloneFloorMemory_s : kSlowFloorMemory_s;
+  const double gain = floor_held_ ? 0.0 : std::max(step_s() / memory_s, learned);
   const bool young = static_cast<double>(floor_steps_) * step_s() < kSlowFloorLearns_s;
   if (!(band.floor > 0.0)) band.floor = band.power;
   band.floor += gain * (std::min(band.power, (young ? 1e6 : kSlowFloorClip) * band.floor) - band.floor);
@@ -193,6 +196,9 @@ void SlowWatch::judge(Band& band) noexcept {
   const std::ptrdiff_t at = &band - bands_.data(), below = at - kOctave, above = at + kOctave;
   const bool tonal = (below < 0 || band.power > kOverBelow * bands_[below].power) &&
                      (above >= kBands || band.power > kOverAbove * bands_[above].power);
+  const bool peak =
+      (at < 1 || band.power >= bands_[at - 1].power) && (at + 1 >= kBands || band.power >= bands_[at + 1].power);
+  band.alone = coherent && tonal && peak;
   const double cycles = band.frequency_hz * step_s();
   // The faster a line, the more of its cycles are asked for: below a tenth of a second many things grow.
   const double asked = std::max({kCyclesToGrow, kSecondsToGrow * band.frequency_hz,

@@ -70,6 +70,7 @@ class SlowWatch {
     std::array<std::array<std::complex<float>, kMaxAxes>, kStepsKept> heard{};
     std::complex<double> turned;  // phasor of a cycle's turn, over the last steps
     double power = 0.0, floor = 0.0, evidence = 0.0;
+    bool alone = false;  // a line of its own that turns steadily, not the flank of another
     SlowLine line;
   };
 

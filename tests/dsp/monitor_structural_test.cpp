@@ -123,6 +123,34 @@ TEST(MonitorStructural, KeepsItApartFromTheToolsChatterWithAnEndForEach) {
   }
 }
 
+// The first order of 1620 rpm lies at 27 Hz.
+SyntheticCut beside_the_first_order(double frequency_hz) {
+  SyntheticCut cut = structural_cut();
+  cut.duration_s = 4.5;
+  cut.speed_rpm = [](double) { return 1620.0; };
+  cut.slow = {frequency_hz, 1.8, 1.12, 3.0};
+  return cut;
+}
+
+TEST(MonitorStructural, HearsAMappedModeBesideASpindleOrderOnceTheOrdersAreKnown) {
+  for (const double hz : {22.0, 24.2, 30.5}) {
+    const SyntheticCut cut = beside_the_first_order(hz);
+    const auto onsets = only(play_with_modes(cut, {{0.98 * hz, 0.02}}), EventType::chatter_onset);
+    ASSERT_EQ(onsets.size(), 1U) << hz;
+    EXPECT_EQ(onsets[0].kind, ChatterKind::structural);
+    EXPECT_NEAR(onsets[0].frequency_hz, hz, 1.0);
+  }
+}
+
+TEST(MonitorStructural, TakesTheOrderItselfForNoStructureHoweverItGrows) {
+  for (const double mode_hz : {25.0, 26.5, 29.0}) {
+    const SyntheticCut cut = beside_the_first_order(27.0);
+    EXPECT_TRUE(
+        of_kind(play_with_modes(cut, {{mode_hz, 0.02}}), EventType::chatter_onset, ChatterKind::structural).empty())
+        << mode_hz;
+  }
+}
+
 TEST(MonitorStructural, EndsItAtTheExitOfTheCut) {
   SyntheticCut cut = structural_cut();
   cut.slow.stop_s = 1e9;

@@ -106,6 +106,19 @@ TEST(SlowWatch, HearsALineThatGrowsWithinAFewOfItsCycles) {
   }
 }
 
+TEST(SlowWatch, HearsALineThatTakesSecondsToGrow) {
+  for (const double hz : {8.0, 16.0, 20.0}) {
+    Listener listener{3, 1000.0};
+    const double a_cycle = std::exp(0.5 / hz), out_s = 6.0;  // by e in 2 s
+    double at_s = 0.0;
+    listener.hear(out_s + 6.0, growing(hz, a_cycle, out_s), [&](double t) {
+      const SlowLine line = listener.watch.best_line(any_line);
+      if (at_s == 0.0 && t > kSettled_s && line.evidence >= kEnoughToCall) at_s = t;
+    });
+    EXPECT_GT(at_s, out_s - 2.0) << hz;
+  }
+}
+
 TEST(SlowWatch, TellsTheFrequencyWithinAHertz) {
   int lines = 0, at_once = 0;
   for (const double hz : {8.0, 10.3, 13.0, 16.1, 20.0}) {
