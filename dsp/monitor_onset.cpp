@@ -27,7 +27,7 @@ constexpr double kWild = 12.0;
 constexpr int kWildHops = 32;
 // Tool chatter at a few hundred revolutions a minute rings anew with every tooth, and no line of it stands in a short
 // window. But it does not repeat, so its power outgrows that of what does: over these ratios of power, for so long.
-constexpr double kOverUsual = 30.0, kOverRepeating = 4.0, kUnrepeated_s = 0.15, kUnrepeatedRevolutions = 8.0;
+constexpr double kOverUsual = 30.0, kOverRepeating = 3.0, kUnrepeated_s = 0.15, kUnrepeatedRevolutions = 8.0;
 constexpr double kRevolutionsToRepeat = 16.0;  // of constant speed and contact, until all that repeats is known
 constexpr double kUsualMemory_s = 2.0, kUsualClip = 4.0;
 
