@@ -5,29 +5,22 @@
 
 #include "dsp/integrity.hpp"
 #include "dsp/numbers.hpp"
+#include "rt/watch.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000, kUnpredictedFaintWaits_ns = 3'000'000'000;
-constexpr double kBeyondDoubt = 3.0;  // of the indicator
-constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
-constexpr std::int64_t kPatience_ns =
-    6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
-constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
 constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
 constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
 constexpr std::int64_t kQuietAsksAnew_ns = 2'000'000'000;
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
-constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
 constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
-constexpr double kTurned = 0.05, kPathTurned = 0.15;                       // rad
+constexpr double kPathTurned = 0.15;                                       // rad
 constexpr double kProgramChanged = 0.02;                                   // relative, of the programmed speed
 constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
 constexpr double kFalls = 0.7;                                             // from one look to the next
@@ -39,14 +32,6 @@ constexpr double kBetterThanThen = 0.2;  // margin over the one with which it ch
 constexpr double kMuchShallower = 0.7;   // of the depth that chattered against the prediction
 
 constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
-
-// Starts or stops a watch whose 0 means that it does not run.
-void run_watch(std::int64_t& since_ns, bool running, std::int64_t now_ns) noexcept {
-  since_ns = !running ? 0 : since_ns == 0 ? now_ns : since_ns;
-}
-bool has_run(std::int64_t since_ns, std::int64_t now_ns, std::int64_t long_ns) noexcept {
-  return since_ns != 0 && now_ns - since_ns >= long_ns;
-}
 
 }  // namespace
 
@@ -178,15 +163,6 @@ void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out)
   if (same_kind && change > kShadowRetarget * candidate_.setting.speed) start(in, next, out);
 }
 
-// A sensor that a cut drives beyond its range cannot be listened to. Where chatter is predicted, or was heard and is
-// being corrected, there is no doubt about what drives it: it is chatter without a line.
-bool Compensator::deafened(const CompensatorInputs& in) const noexcept {
-  if (in.monitor->doubts != kSaturated || air_since_ns_ != 0) return false;
-  const bool corrects = phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  return corrects || (has_run(saturated_since_ns_, in.now_ns, kSaturatedIsChatter_ns) &&
-                      margin_at(coming_prediction(in), in.monitor->speed) < 0.0);
-}
-
 // A stop is asked for until the tool is out of the part, or the controller does not take it.
 void Compensator::follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const bool over = has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns);
@@ -224,17 +200,6 @@ CutSetting Compensator::programmed(const CompensatorInputs& in) const noexcept {
   return program;
 }
 
-Prediction Compensator::prediction(const CompensatorInputs& in) const noexcept {
-  return {in.lobes, in.lobes_ahead, in.axial_depth};
-}
-
-// For the depth that the cut is on its way to: a pocket that is left again by the deeper cut is none.
-Prediction Compensator::coming_prediction(const CompensatorInputs& in) const noexcept {
-  Prediction coming = prediction(in);
-  coming.axial_depth = in.coming_depth;
-  return coming;
-}
-
 CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   const CutSetting program = programmed(in);
   CutPlace place;
@@ -246,72 +211,6 @@ CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   place.feed_direction = program.feed_direction;
   place.axial_depth = in.axial_depth;
   return place;
-}
-
-ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  ChatterSituation s;
-  s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
-  s.chatter_frequency_hz = frequency_of_chatter(in);
-  s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
-  s.doubtful = is_contradicted(in) && !(heard.indicator >= kBeyondDoubt);
-  s.deafened = in.monitor->doubts != kNoDoubt;
-  s.patience_is_out =
-      settings_.mode == RuntimeMode::active && (has_run(believed_since_ns_, in.now_ns, kPatience_ns) ||
-                                                has_run(saturated_since_ns_, in.now_ns, kPatienceDeaf_ns));
-  s.teeth = settings_.teeth;
-  s.programmed = programmed(in);
-  const bool followed = correcting() && settings_.mode == RuntimeMode::active;
-  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
-  s.set_speed = s.present.speed;
-  s.present.speed = heard.speed;
-  s.prediction = coming_prediction(in);
-  // A feed that was turned brings its own lobes; those of the program, to which every other candidate returns, are not
-  // known.
-  if (std::abs(s.present.feed_direction - s.programmed.feed_direction) > kTurned) {
-    s.prediction.here = s.prediction.ahead = nullptr;
-  }
-  s.remembered = memory_.recall(place(in));
-  return s;
-}
-
-// NaN where the tool is thrown about without a line.
-double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (!heard.chatter || !heard.single_line) return kNaN;
-  return in.lobes == nullptr ? heard.chatter_frequency_hz
-                             : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
-}
-
-// Whether what is heard is predicted not to be: by the lobes, or by a robot that is out of the part.
-bool Compensator::is_contradicted(const CompensatorInputs& in) const noexcept {
-  return in.coming_depth <= 0.0 || safe_margin_at(coming_prediction(in), in.monitor->speed) > 0.0;
-}
-
-// Loud, and for so long as it takes to be believed: at once where chatter is predicted. Elsewhere a line of unknown
-// kind may be forced, and a burst be that of an entry.
-bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (deafened(in)) return true;
-  if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
-  const Prediction coming = coming_prediction(in);
-  if (margin_at(coming, heard.speed) < 0.0) return true;
-  const bool unknown = heard.kind == ChatterKind::unknown;
-  const bool faint = !(heard.indicator >= kBeyondDoubt);
-  const std::int64_t lasts_ns = !is_contradicted(in) ? (unknown ? kUnknownKindWaits_ns : 0)
-                                : unknown || faint   ? kUnpredictedFaintWaits_ns
-                                                     : kUnpredictedWaits_ns;
-  return has_run(chatter_since_ns_, in.now_ns, lasts_ns);
-}
-
-// What sounds like chatter of the structure may be the sweep of a changing speed: it has to be at a mode of the
-// structure, where those are known, and to last, where none is predicted.
-bool Compensator::structure_chatters(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (!heard.structural) return false;
-  if (in.lobes != nullptr && in.lobes->mode_count > 0 && !is_at_a_mode(*in.lobes, heard.structural_frequency_hz))
-    return false;
-  return !is_contradicted(in) || has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
 }
 
 // The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
@@ -331,7 +230,7 @@ void Compensator::remember(const CompensatorInputs& in) noexcept {
   remembered_ = true;
   CutPlace there = place(in);
   there.axial_depth = chatter_depth_;
-  memory_.keep({there, candidate_.kind, candidate_.setting});
+  memory_.keep({there, candidate_.setting});
 }
 
 std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {

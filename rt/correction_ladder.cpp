@@ -152,18 +152,16 @@ Rung remembered_rung(const ChatterSituation& s, const Attempts& attempts, const 
   if (s.remembered == nullptr) return {};
   const CutSetting& setting = s.remembered->setting;
   const Attempts::Speeds tried = attempts.speeds(s.prediction.axial_depth);
-  const bool was_tried =
-      std::any_of(tried.speed.begin(), tried.speed.begin() + static_cast<std::ptrdiff_t>(tried.count),
-                  [&](double speed) { return std::abs(speed - setting.speed) < 0.01 * speed; });
+  const bool failed = was_tried({tried.speed.data(), tried.count}, setting.speed);
   const bool is_there = std::abs(setting.speed - s.present.speed) < kSameSpeedAsRemembered * s.present.speed;
   const double now = margin_at(s.prediction, s.present.speed), there = margin_at(s.prediction, setting.speed);
   const bool predicted_worse = !std::isnan(now) && !(there > now && there > 0.0);
-  if (s.remembered->kind != CorrectionKind::spindle_speed || s.structural || s.deafened || was_tried || is_there ||
-      predicted_worse || attempts.refused(CorrectionKind::spindle_speed) || !may_stay_at(limits, setting.speed) ||
+  if (s.structural || s.deafened || failed || is_there || predicted_worse ||
+      attempts.refused(CorrectionKind::spindle_speed) || !may_stay_at(limits, setting.speed) ||
       !keeps_feed_per_tooth(limits, setting.speed, s.programmed.speed))
     return {};
   Rung rung;
-  rung.candidate.kind = s.remembered->kind;
+  rung.candidate.kind = CorrectionKind::spindle_speed;
   rung.candidate.setting = s.programmed;
   rung.candidate.setting.speed = setting.speed;
   rung.candidate.remembered = true;

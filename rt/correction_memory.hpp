@@ -1,5 +1,5 @@
-// What worked where: the corrections that ended chatter, kept by posture, programmed speed and feed direction, so that
-// the same corner of the next part is answered at once with what helped before. Fixed size, the oldest goes first;
+// What worked where: the spindle speeds that ended chatter, kept by posture, programmed speed and feed direction, so
+// that the same corner of the next part is answered at once with what helped before. Fixed size, the oldest goes first;
 // noexcept, for the loop.
 #pragma once
 
@@ -20,7 +20,6 @@ struct CutPlace {
 
 struct Remembered {
   CutPlace place;
-  CorrectionKind kind = CorrectionKind::release;
   CutSetting setting;
 };
 

@@ -170,7 +170,6 @@ TEST_F(Ladder, AfterSixteenAttemptsOnlyTheStopIsLeft) {
 
 TEST_F(Ladder, WhatWorkedHereBeforeComesFirstUnlessItWasTriedOrIsPredictedWorse) {
   Remembered worked;
-  worked.kind = CorrectionKind::spindle_speed;
   worked.setting.speed = rpm_to_rad_s(10800);
   cut.remembered = &worked;
   const Candidate again = next_candidate(cut, attempts, limits);
@@ -235,7 +234,6 @@ TEST(RandomLadder, NothingIsPredictedWorseThanThePresentSettingAndAllStaysInside
     s.present.feed_factor = cases.chance(0.7) ? 1.0 : cases.between(0.3, 1.0);
     s.prediction = c.kept.view();
     Remembered worked;
-    worked.kind = kEveryAsk[cases.whole(0, 4)];
     worked.setting.speed = c.speed * cases.between(0.7, 1.4);
     if (cases.chance(0.3)) s.remembered = &worked;
     Attempts attempts;

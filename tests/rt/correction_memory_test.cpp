@@ -26,7 +26,6 @@ CutPlace corner(int number) {
 Remembered speed_at(const CutPlace& place, double speed) {
   Remembered worked;
   worked.place = place;
-  worked.kind = CorrectionKind::spindle_speed;
   worked.setting.speed = speed;
   return worked;
 }
@@ -44,7 +43,6 @@ TEST(CorrectionMemory, WhatWorkedIsRecalledAtItsPlaceOnly) {
     const Remembered* known = memory.recall(corner(i));
     ASSERT_NE(known, nullptr);
     EXPECT_EQ(known->setting.speed, 1000.0 + i);
-    EXPECT_EQ(known->kind, CorrectionKind::spindle_speed);
   }
   EXPECT_EQ(memory.recall(corner(5)), nullptr);
 }

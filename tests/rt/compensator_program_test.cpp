@@ -1,0 +1,121 @@
+// Prediction, memory and the program: where to, and back again.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "dsp/numbers.hpp"
+#include "rt/compensator.hpp"
+#include "tests/rt/compensator_bench.hpp"
+
+namespace stillcut {
+namespace {
+
+TEST(Compensator, WhereEverySpeedIsPredictedWorseNoneIsAsked) {
+  Bench bench{RuntimeMode::shadow};
+  const LobeDiagram worse = diagram_of({0.1, 0.1, 0.1, 0.9, 0.1, 0.1, 0.1}, spindle_6000_to_12000());
+  bench.in.lobes = &worse;
+  bench.run(2.0, chattering(0));
+  ASSERT_FALSE(bench.corrections.empty());
+  for (const Correction& c : bench.corrections) {
+    EXPECT_EQ(c.kind, CorrectionKind::feed_override);
+    EXPECT_NEAR(c.spindle_speed_rpm, 9000.0, 1e-6);
+    EXPECT_NE(c.limited_by & kNoStableSettingKnown, 0);
+  }
+}
+
+// A pocket here that the announced path leaves is none.
+TEST(Compensator, LooksAheadAlongTheAnnouncedPath) {
+  std::vector<double> here(61, 0.5), ahead(61, 0.5);
+  for (std::size_t i = 12; i < 16; ++i) here[i] = 4.0;             // about 7380 rpm
+  for (std::size_t i = 48; i < 56; ++i) here[i] = ahead[i] = 4.0;  // about 11070 rpm
+  const LobeDiagram lobes = diagram_of(here, spindle_6000_to_12000());
+  const LobeDiagram along = diagram_of(ahead, spindle_6000_to_12000());
+  for (const bool announced : {false, true}) {
+    Bench bench{RuntimeMode::shadow};
+    bench.in.lobes = &lobes;
+    bench.in.lobes_ahead = announced ? &along : nullptr;
+    bench.run(0.5, chattering(0));
+    EXPECT_NEAR(bench.targets_rpm().back(), announced ? 11070.0 : 7380.0, 1.0);
+  }
+}
+
+TEST(Compensator, WhatWorkedAtAPostureIsTheFirstAnswerThereTheNextTime) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  RobotState robot;
+  bench.in.robot = &robot;
+  const auto first_target = [&] {  // of a cut in which only 11070 rpm helps
+    const std::size_t before = bench.targets_rpm().size();
+    double speed_rpm = 9000.0;
+    for (int i = 0; i < 3000; ++i) {
+      const bool cured = speed_rpm > 10500.0;
+      bench.step(cured ? quiet(0, State::cut, speed_rpm) : chattering(0, 738.0, speed_rpm));
+      bench.acknowledge(true);
+      if (!bench.corrections.empty() && bench.corrections.back().kind == CorrectionKind::spindle_speed)
+        speed_rpm = bench.corrections.back().spindle_speed_rpm;
+    }
+    bench.run_acknowledged(1.5, quiet(0, State::air));
+    const std::vector<double> targets = bench.targets_rpm();
+    return targets.size() > before ? targets[before] : kNaN;
+  };
+  EXPECT_NEAR(first_target(), 7380.0, 1e-6);
+  EXPECT_NEAR(bench.targets_rpm().back(), 11070.0, 1e-6);
+  bench.corrections.clear();
+  EXPECT_NEAR(first_target(), 11070.0, 1e-6);
+  robot.joint_position[1] = 0.5;  // elsewhere nothing is known
+  bench.corrections.clear();
+  EXPECT_NEAR(first_target(), 7380.0, 1e-6);
+}
+
+// Stable again at the program since the cut is less deep: back, slowly, and released when there. Where chatter comes
+// back on the way, back to what helped, and not a second time in this cut.
+TEST(Compensator, ReturnsSlowlyWhenTheReasonIsGoneAndNotASecondTimeInVain) {
+  for (const bool comes_back : {false, true}) {
+    Bench bench{RuntimeMode::active};
+    bench.in.controller_alive = true;
+    std::vector<double> limits_mm(61, 1.0);
+    for (std::size_t i = 10; i < 20; ++i) limits_mm[i] = 4.0;  // a pocket about 7500 rpm
+    const LobeDiagram lobes = diagram_of(limits_mm, spindle_6000_to_12000());
+    bench.in.lobes = &lobes;
+    bench.in.axial_depth = 1.5e-3;
+    bench.run_acknowledged(0.5, chattering(0));
+    const double target = bench.corrections.back().spindle_speed_target_rpm;
+    EXPECT_NEAR(target, 7380.0, 1.0);
+    bench.run_acknowledged(4.0, quiet(0, State::cut, target));
+    EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);  // the reason is still there
+    bench.in.axial_depth = 0.5e-3;
+    bench.run_acknowledged(0.9, quiet(0, State::cut, target));
+    EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);  // the way out of the part is no reason
+    bench.run_acknowledged(1.0, quiet(0, State::cut, target));
+    ASSERT_EQ(bench.corrections.back().kind, CorrectionKind::spindle_speed);
+    EXPECT_NEAR(bench.corrections.back().spindle_speed_target_rpm, 9000.0, 1e-6);
+    EXPECT_LT(bench.corrections.back().spindle_speed_rpm, target + 1.1 * 300.0);  // a tenth of 3000 rpm/s
+    if (!comes_back) {
+      bench.run_acknowledged(10.0, quiet(0));
+      EXPECT_FALSE(bench.compensator().correcting());
+      EXPECT_EQ(bench.corrections.back().kind, CorrectionKind::release);
+      EXPECT_EQ(bench.releases(), 1);
+      continue;
+    }
+    // Stable by the prediction: it has to last a second before it is answered.
+    bench.run_acknowledged(1.3, chattering(0));
+    EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
+    bench.run_acknowledged(20.0, quiet(0, State::cut, target));
+    EXPECT_EQ(bench.corrections.back().spindle_speed_target_rpm, target);
+    EXPECT_EQ(bench.releases(), 0);
+  }
+}
+
+TEST(Compensator, AnotherProgrammedSpeedEndsTheCorrection) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  bench.run_acknowledged(0.5, chattering(0));
+  ASSERT_TRUE(bench.compensator().correcting());
+  bench.in.nominal_speed = rpm_to_rad_s(6500);
+  bench.run_acknowledged(0.1, quiet(0));
+  EXPECT_FALSE(bench.compensator().correcting());
+  EXPECT_EQ(bench.releases(), 1);
+}
+
+}  // namespace
+}  // namespace stillcut
