@@ -65,7 +65,7 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && air_since_ns_ == 0, in.now_ns);
   if (const char* reason = reason_to_hold_back(in)) {
     // Where the sensor is beyond its range at the new setting as well, that is no second time the answer.
-    if (correcting() && in.monitor->doubts == kSaturated) attempts_.add(candidate_, in.axial_depth);
+    if (correcting() && in.monitor->doubts == kSaturated) give_up_candidate(in);
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
     chatter_since_ns_ = quiet_since_ns_ = 0;
@@ -122,8 +122,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
   if (correcting() && !refused && gives_more_time(in)) return;
   if (correcting() && !refused) {  // it had its time and did not help: the next one
-    attempts_.add(candidate_, in.axial_depth);
-    memory_.forget(place(in));
+    give_up_candidate(in);
   }
   const ChatterSituation now = situation(in);
   const Candidate next = next_candidate(now, attempts_, settings_.limits);
@@ -231,6 +230,12 @@ void Compensator::remember(const CompensatorInputs& in) noexcept {
   CutPlace there = place(in);
   there.axial_depth = chatter_depth_;
   memory_.keep({there, candidate_.setting});
+}
+
+// It was tried and did not help: not again at this depth, nor, if it is what worked here before, the next time.
+void Compensator::give_up_candidate(const CompensatorInputs& in) noexcept {
+  attempts_.add(candidate_, in.axial_depth);
+  if (remembered_) memory_.forget(place(in), candidate_.setting.speed);
 }
 
 std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {

@@ -66,6 +66,7 @@ class Compensator {
   void publish(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void release(const CompensatorInputs& in, const char* reason, OutputQueue& out) noexcept;
   void remember(const CompensatorInputs& in) noexcept;
+  void give_up_candidate(const CompensatorInputs& in) noexcept;
   [[nodiscard]] const char* reason_to_hold_back(const CompensatorInputs& in) noexcept;
   [[nodiscard]] ChatterSituation situation(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] Prediction prediction(const CompensatorInputs& in) const noexcept;

@@ -29,7 +29,8 @@ class CorrectionMemory {
 
   // Replaces what was known of the same place.
   void keep(const Remembered& worked) noexcept;
-  void forget(const CutPlace& place) noexcept;  // it did not help this time
+  // A speed (rad/s) that did not help this time; what else worked there stays.
+  void forget(const CutPlace& place, double speed) noexcept;
   // Nothing where no place is near; depths deeper than the remembered one are another question.
   [[nodiscard]] const Remembered* recall(const CutPlace& place) const noexcept;
 

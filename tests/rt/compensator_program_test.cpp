@@ -39,32 +39,52 @@ TEST(Compensator, LooksAheadAlongTheAnnouncedPath) {
   }
 }
 
+// The first speed asked for in a cut of some seconds in which only 11070 rpm helps.
+double first_target_where_only_11070_helps(Bench& bench, double seconds = 6.0) {
+  bench.corrections.clear();
+  double speed_rpm = 9000.0;
+  for (int i = 0; i < static_cast<int>(seconds / 0.002); ++i) {
+    const bool cured = speed_rpm > 10500.0;
+    bench.step(cured ? quiet(0, State::cut, speed_rpm) : chattering(0, 738.0, speed_rpm));
+    bench.acknowledge(true);
+    if (!bench.corrections.empty() && bench.corrections.back().kind == CorrectionKind::spindle_speed)
+      speed_rpm = bench.corrections.back().spindle_speed_rpm;
+  }
+  bench.run_acknowledged(1.5, quiet(0, State::air));
+  const std::vector<double> targets = bench.targets_rpm();
+  return targets.empty() ? kNaN : targets.front();
+}
+
 TEST(Compensator, WhatWorkedAtAPostureIsTheFirstAnswerThereTheNextTime) {
   Bench bench{RuntimeMode::active};
   bench.in.controller_alive = true;
   RobotState robot;
   bench.in.robot = &robot;
-  const auto first_target = [&] {  // of a cut in which only 11070 rpm helps
-    const std::size_t before = bench.targets_rpm().size();
-    double speed_rpm = 9000.0;
-    for (int i = 0; i < 3000; ++i) {
-      const bool cured = speed_rpm > 10500.0;
-      bench.step(cured ? quiet(0, State::cut, speed_rpm) : chattering(0, 738.0, speed_rpm));
-      bench.acknowledge(true);
-      if (!bench.corrections.empty() && bench.corrections.back().kind == CorrectionKind::spindle_speed)
-        speed_rpm = bench.corrections.back().spindle_speed_rpm;
-    }
-    bench.run_acknowledged(1.5, quiet(0, State::air));
-    const std::vector<double> targets = bench.targets_rpm();
-    return targets.size() > before ? targets[before] : kNaN;
-  };
-  EXPECT_NEAR(first_target(), 7380.0, 1e-6);
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 7380.0, 1e-6);
   EXPECT_NEAR(bench.targets_rpm().back(), 11070.0, 1e-6);
-  bench.corrections.clear();
-  EXPECT_NEAR(first_target(), 11070.0, 1e-6);
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 11070.0, 1e-6);
   robot.joint_position[1] = 0.5;  // elsewhere nothing is known
-  bench.corrections.clear();
-  EXPECT_NEAR(first_target(), 7380.0, 1e-6);
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 7380.0, 1e-6);
+}
+
+// Another speed that fails at the same place says nothing against the one that worked there.
+TEST(Compensator, OnlyTheRememberedSpeedThatFailedItselfIsForgotten) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  RobotState robot;
+  bench.in.robot = &robot;
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 7380.0, 1e-6);
+  bench.in.axial_depth = 1.5e-3;  // deeper than is remembered: begins with 7380 rpm, and ends before the next
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench, 2.5), 7380.0, 1e-6);
+  EXPECT_NEAR(bench.targets_rpm().back(), 11070.0, 1e-6);
+  bench.in.axial_depth = 1e-3;
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 11070.0, 1e-6);
+  bench.run_acknowledged(0.5, chattering(0));
+  const double there = bench.targets_rpm().back();
+  EXPECT_NEAR(there, 11070.0, 1e-6);
+  bench.run_acknowledged(4.0, chattering(0, 738.0, there));  // now it fails
+  bench.run_acknowledged(1.5, quiet(0, State::air));
+  EXPECT_NEAR(first_target_where_only_11070_helps(bench), 7380.0, 1e-6);
 }
 
 // Stable again at the program since the cut is less deep: back, slowly, and released when there. Where chatter comes
