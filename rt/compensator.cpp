@@ -65,7 +65,8 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && air_since_ns_ == 0, in.now_ns);
   if (const char* reason = reason_to_hold_back(in)) {
     // Where the sensor is beyond its range at the new setting as well, that is no second time the answer.
-    if (correcting() && in.monitor->doubts == kSaturated) give_up_candidate(in);
+    const bool at_setting = phase_ == Phase::acting || phase_ == Phase::holding;
+    if (at_setting && in.monitor->doubts == kSaturated) give_up_candidate(in);
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
     chatter_since_ns_ = quiet_since_ns_ = 0;
@@ -114,7 +115,7 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
     return start(in, Candidate{candidate_}, out);
   }
   loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
-  const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
+  const bool acting = has_its_time(in);
   const bool refused = correcting() && attempts_.refused(candidate_.kind);
   const bool looked_in_vain = phase_ == Phase::none && in.now_ns < act_until_ns_;
   if ((acting && !refused) || looked_in_vain) return;

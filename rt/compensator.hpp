@@ -73,6 +73,7 @@ class Compensator {
   [[nodiscard]] CutPlace place(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutSetting programmed(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double frequency_of_chatter(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool has_its_time(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool deafened(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool is_heard(const CompensatorInputs& in) const noexcept {
     return in.monitor->chatter || in.monitor->structural || deafened(in);

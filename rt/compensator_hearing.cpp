@@ -18,7 +18,8 @@ constexpr std::int64_t kPatience_ns =
     6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
 constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
 constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
-constexpr double kTurned = 0.05;  // rad, another direction than the programmed one
+constexpr std::int64_t kSaturationLasts_ns = 600'000'000;  // of the doubt, after the last sample at the range's end
+constexpr double kTurned = 0.05;                           // rad, another direction than the programmed one
 
 }  // namespace
 
@@ -33,13 +34,20 @@ Prediction Compensator::coming_prediction(const CompensatorInputs& in) const noe
   return coming;
 }
 
+// Whether the candidate's effect cannot be told yet: it moves, or has not had the time to act. A saturated sensor is
+// doubted for a while after its last sample at the end of its range, so the doubt speaks of the setting only when it
+// outlasts that.
+bool Compensator::has_its_time(const CompensatorInputs& in) const noexcept {
+  const std::int64_t told_late_ns = in.monitor->doubts == kSaturated ? kSaturationLasts_ns : 0;
+  return phase_ == Phase::acting && in.now_ns < act_until_ns_ + told_late_ns;
+}
+
 // A sensor that a cut drives beyond its range cannot be listened to. Where chatter is predicted, or was heard and is
 // being corrected, there is no doubt about what drives it: it is chatter without a line.
 bool Compensator::deafened(const CompensatorInputs& in) const noexcept {
   if (in.monitor->doubts != kSaturated || air_since_ns_ != 0) return false;
-  const bool corrects = phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  return corrects || (has_run(saturated_since_ns_, in.now_ns, kSaturatedIsChatter_ns) &&
-                      margin_at(coming_prediction(in), in.monitor->speed) < 0.0);
+  return has_its_time(in) || (has_run(saturated_since_ns_, in.now_ns, kSaturatedIsChatter_ns) &&
+                              margin_at(coming_prediction(in), in.monitor->speed) < 0.0);
 }
 
 ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexcept {

@@ -38,6 +38,27 @@ TEST(Compensator, SaturationIsChatterWhereChatterIsPredicted) {
 }
 
 // What is left of chatter is tolerated, but not that it grows back.
+// The doubt outlasts the last sample at the end of the range by half a second: what it tells at the end of the move is
+// of the way there, and no reason to take the setting for tried.
+TEST(Compensator, SaturationOnTheWayToASettingIsNoEvidenceAgainstIt) {
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  const std::int64_t asked_ns = bench.now_ns;
+  bench.run_acknowledged(0.2, chattering(0));
+  const double target = bench.targets_rpm().back();
+  MonitorView saturated = quiet(0, State::cannot_tell, target);
+  saturated.doubts = kSaturated;
+  while (bench.compensator().correcting() && bench.now_ns < asked_ns + 1900 * kMillisecond)  // 1.4 s to move and act
+    bench.run_acknowledged(0.002, saturated);
+  EXPECT_TRUE(bench.compensator().correcting());
+  bench.run_acknowledged(3.0, quiet(0, State::cut, target));
+  EXPECT_EQ(bench.releases(), 0);
+  bench.run_acknowledged(1.5, quiet(0, State::air));
+  bench.run_acknowledged(0.2, chattering(0));
+  EXPECT_EQ(bench.targets_rpm().back(), target);
+  EXPECT_EQ(bench.targets_rpm().size(), 1U);
+}
+
 TEST(Compensator, AResidueThatGrowsBackIsAnsweredAgain) {
   Bench bench{RuntimeMode::active};
   bench.in.controller_alive = true;
