@@ -10,10 +10,7 @@
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
-constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
-constexpr std::int64_t kQuietAsksAnew_ns = 2'000'000'000;
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
@@ -35,30 +32,10 @@ constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::
 
 }  // namespace
 
-void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
-  if (ack.sequence < first_sequence_ || ack.sequence > sequence_) return;  // no answer to what is asked now
-  if (ack.accepted) {
-    answered_ns_ = std::max(answered_ns_, ack.stamp_ns);
-  } else if (candidate_.kind == CorrectionKind::spindle_speed || phase_ == Phase::none) {
-    refused_ = true;
-  } else {  // not every controller can do every kind
-    attempts_.refuse(candidate_.kind);
-  }
-}
-
-// Why nothing may be asked of the controller now; nullptr when all conditions hold.
-const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
-  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !deafened(in)) return "the monitor cannot tell";
-  if (settings_.mode != RuntimeMode::active) return nullptr;
-  if (!in.controller_alive) return "controller silent";
-  if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
-  // Quiet for a while: a new question.
-  if (!correcting() && has_run(unheard_since_ns_, in.now_ns, kQuietAsksAnew_ns)) refused_ = false;
-  return refused_ ? "controller refused or did not answer" : nullptr;
-}
-
 void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
+  meet_controller(in);
+  tell_refusal(in, out);
   const State state = in.monitor->state;
   run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
   run_watch(unheard_since_ns_, !is_heard(in), in.now_ns);
@@ -81,6 +58,8 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (correcting() && program_changed(in)) return release(in, "the program changed", out);
   if (phase_ == Phase::stopped) {
     follow_stop(in, out);
+  } else if (correcting() && attempts_.refused(candidate_.kind)) {
+    leave_what_is_refused(in, out);
   } else if (chatter) {
     hear_chatter(in, out);
   } else {
@@ -93,7 +72,7 @@ void Compensator::hear_nothing(const CompensatorInputs& in, OutputQueue& out) no
   said_none_ = false;
   if (has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns)) {
     if (correcting()) release(in, "cut is over", out);
-    attempts_.clear();
+    attempts_.end_cut();
     return_failed_ = false;
     return;
   }
@@ -116,18 +95,21 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
   }
   loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
   const bool acting = has_its_time(in);
-  const bool refused = correcting() && attempts_.refused(candidate_.kind);
   const bool looked_in_vain = phase_ == Phase::none && in.now_ns < act_until_ns_;
-  if ((acting && !refused) || looked_in_vain) return;
+  if (acting || looked_in_vain) return;
   if (!tool_chatters(in) && !structure_chatters(in)) return;
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
-  if (correcting() && !refused && gives_more_time(in)) return;
-  if (correcting() && !refused) {  // it had its time and did not help: the next one
-    give_up_candidate(in);
-  }
+  if (correcting() && gives_more_time(in)) return;
+  if (correcting()) give_up_candidate(in);  // it had its time and did not help: the next one
+  ask_next(in, out);
+}
+
+void Compensator::ask_next(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const ChatterSituation now = situation(in);
   const Candidate next = next_candidate(now, attempts_, settings_.limits);
   if (next.kind == CorrectionKind::release && now.doubtful) {  // what is set is predicted stable: it stays
+    if (correcting() && attempts_.refused(candidate_.kind))
+      release(in, with_refusal("the controller refuses").data(), out);
     if (correcting()) phase_ = Phase::acting;
     act_until_ns_ = in.now_ns + kDoubtLooksAgain_ns;
     return;
@@ -161,18 +143,6 @@ void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out)
   const bool same_kind = next.kind == CorrectionKind::spindle_speed && candidate_.kind == next.kind;
   const double change = std::abs(next.setting.speed - candidate_.setting.speed);
   if (same_kind && change > kShadowRetarget * candidate_.setting.speed) start(in, next, out);
-}
-
-// A stop is asked for until the tool is out of the part, or the controller does not take it.
-void Compensator::follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept {
-  const bool over = has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns);
-  if (over) attempts_.clear();
-  if (over) {
-    release(in, "stopped, and the cut is over", out);
-  } else if (attempts_.refused(CorrectionKind::stop_request)) {
-    release(in, "the controller does not stop", out);
-    said_none_ = true;
-  }
 }
 
 // A correction belongs to the program that it was chosen for: another programmed speed, or a path that takes a turned

@@ -50,6 +50,8 @@ class Compensator {
   [[nodiscard]] bool correcting() const noexcept { return phase_ != Phase::none; }
 
  private:
+  static constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;  // shorter gaps in the part are of the same cut
+
   // acting: a candidate moves and has its time; holding: chatter has ended, its setting stays; returning: slowly back
   // to the program; stopped: a stop was asked for.
   enum class Phase : std::uint8_t { none, acting, holding, returning, stopped };
@@ -57,6 +59,11 @@ class Compensator {
   void hear_chatter(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void hear_nothing(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept;
+  void ask_next(const CompensatorInputs& in, OutputQueue& out) noexcept;
+  void meet_controller(const CompensatorInputs& in) noexcept;
+  void tell_refusal(const CompensatorInputs& in, OutputQueue& out) noexcept;
+  void leave_what_is_refused(const CompensatorInputs& in, OutputQueue& out) noexcept;
+  [[nodiscard]] ShortText with_refusal(const char* reason) const noexcept;
   void retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void start(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
   void begin_motion(const CompensatorInputs& in) noexcept;
@@ -100,8 +107,15 @@ class Compensator {
   bool return_failed_ = false;  // chatter came back on the way to the program: no second time in this cut
   bool held_back_ = false;      // a condition failed; released until it holds again
   bool said_none_ = false;
-  bool refused_ = false;                            // the controller refused or did not answer: no more in this episode
-  std::int64_t sequence_ = 0, first_sequence_ = 0;  // of the last message, of the first of this candidate
+  bool unanswered_ = false;                         // the controller did not answer: no more in this episode
+  bool controller_met_ = false;                     // heard, and not silent since
+  CorrectionKind asked_ = CorrectionKind::release;  // that was last asked for
+  bool taken_ = false;                              // the controller has accepted the candidate
+  ShortText refusal_{};                             // why it last refused one, in its own words
+  bool refusal_is_news_ = false;
+  CutSetting before_;  // in force when the candidate was chosen
+  std::int64_t sequence_ = 0;
+  std::int64_t first_sequence_ = 0, last_asked_sequence_ = 0;  // messages of this candidate
   std::int64_t began_ns_ = 0, act_until_ns_ = 0, next_publish_ns_ = 0;
   std::int64_t answered_ns_ = 0;  // last acknowledgement, or the first message of this correction
   std::int64_t chatter_since_ns_ = 0, quiet_since_ns_ = 0, air_since_ns_ = 0, saturated_since_ns_ = 0,

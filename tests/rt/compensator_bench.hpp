@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "rt/compensator.hpp"
@@ -42,9 +43,9 @@ class Bench {
       acknowledge(true);
     }
   }
-  void acknowledge(bool accepted) {
+  void acknowledge(bool accepted, std::string_view reason = {}) {
     if (corrections.empty()) return;
-    compensator_.acknowledge({now_ns, corrections.back().sequence, accepted, 0.0, 1.0});
+    compensator_.acknowledge({now_ns, corrections.back().sequence, accepted, 0.0, 1.0, short_text(reason)});
   }
   [[nodiscard]] Compensator& compensator() { return compensator_; }
   [[nodiscard]] int releases() const {

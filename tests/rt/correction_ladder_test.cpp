@@ -84,7 +84,7 @@ TEST_F(Ladder, ChatterOfTheStructureIsMetByDirectionThenByThePredictedSpeedAndNo
   std::erase(asked, spindle_speed);
   EXPECT_EQ(asked, (std::vector{feed_override, stop_request}));
 
-  attempts.clear();
+  attempts = {};
   attempts.refuse(feed_direction);
   EXPECT_EQ(next_candidate(cut, attempts, limits).lobe, 0);  // the tool's recipe does not apply
 }
@@ -134,7 +134,7 @@ TEST_F(Ladder, WithoutAKnownDepthWhatDidNotHelpIsNotTriedAgain) {
 
 TEST_F(Ladder, WhatTheControllerRefusedIsNotAskedForAgain) {
   for (unsigned refused = 0; refused < 32; ++refused) {
-    attempts.clear();
+    attempts = {};
     for (unsigned i = 0; i < 5; ++i)
       if ((refused >> i & 1U) != 0) attempts.refuse(kEveryAsk[i]);
     for (const CorrectionKind kind : all_asked()) EXPECT_FALSE(attempts.refused(kind)) << int(kind);
