@@ -17,24 +17,17 @@ constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
 constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
-constexpr double kPathTurned = 0.15;                                       // rad
-constexpr double kProgramChanged = 0.02;                                   // relative, of the programmed speed
 constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
 constexpr double kFalls = 0.7;                                             // from one look to the next
 constexpr std::int64_t kLookAgain_ns = 300'000'000, kDoubtLooksAgain_ns = 1'000'000'000;
 constexpr double kSwingsToAct = 2.0;
-constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
-constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
-constexpr double kBetterThanThen = 0.2;  // margin over the one with which it chattered
-constexpr double kMuchShallower = 0.7;   // of the depth that chattered against the prediction
-
-constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
 
 }  // namespace
 
 void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
   meet_controller(in);
+  follow_turn_back(in);
   tell_refusal(in, out);
   const State state = in.monitor->state;
   run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
@@ -145,31 +138,6 @@ void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out)
   if (same_kind && change > kShadowRetarget * candidate_.setting.speed) start(in, next, out);
 }
 
-// A correction belongs to the program that it was chosen for: another programmed speed, or a path that takes a turned
-// feed elsewhere, ends it.
-bool Compensator::program_changed(const CompensatorInputs& in) const noexcept {
-  if (phase_ == Phase::stopped) return false;
-  const bool speed = in.nominal_speed > 0.0 && nominal_speed_ > 0.0 &&
-                     std::abs(in.nominal_speed - nominal_speed_) > kProgramChanged * nominal_speed_;
-  if (candidate_.kind != CorrectionKind::feed_direction || motion_time(in.now_ns) < motion_.arrives_at()) return speed;
-  // Controllers tell the direction of the program or that of the motion.
-  const auto away = [&](double direction) {
-    return std::abs(std::remainder(in.feed_direction - direction, kTwoPi)) > kPathTurned;
-  };
-  return speed || (away(motion_.target().feed_direction) && away(programmed_.feed_direction));
-}
-
-// As found when the correction began; before, as it is now. A programmed speed that the spindle cannot turn is none.
-CutSetting Compensator::programmed(const CompensatorInputs& in) const noexcept {
-  if (correcting()) return programmed_;
-  const SpindleLimits& spindle = settings_.limits.spindle;
-  CutSetting program;
-  const bool programmed = in.nominal_speed >= spindle.min_speed && in.nominal_speed <= spindle.max_speed;
-  program.speed = programmed ? in.nominal_speed : std::clamp(in.monitor->speed, spindle.min_speed, spindle.max_speed);
-  program.feed_direction = in.feed_direction;
-  return program;
-}
-
 CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   const CutSetting program = programmed(in);
   CutPlace place;
@@ -181,18 +149,6 @@ CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   place.feed_direction = program.feed_direction;
   place.axial_depth = in.axial_depth;
   return place;
-}
-
-// The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
-// chattered, only less depth counts.
-bool Compensator::reason_is_gone(const CompensatorInputs& in) const noexcept {
-  if (return_failed_ || settings_.mode != RuntimeMode::active) return false;
-  const Prediction now = prediction(in);
-  if (!(safe_margin_at(now, programmed_.speed) > kSafeToReturn)) return false;
-  // The lobes are those of the direction that the feed now has.
-  const bool turned = candidate_.kind == CorrectionKind::feed_direction;
-  if (turned || !(chatter_margin_ < 0.0)) return in.axial_depth < kMuchShallower * chatter_depth_;
-  return margin_at(now, programmed_.speed) > chatter_margin_ + kBetterThanThen;
 }
 
 void Compensator::remember(const CompensatorInputs& in) noexcept {
@@ -217,20 +173,6 @@ std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noex
   s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, most);
   if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
   return to_ns(s);
-}
-
-void Compensator::begin_motion(const CompensatorInputs& in) noexcept {
-  programmed_ = programmed(in);
-  began_ns_ = in.now_ns;
-  CutSetting present = programmed_;
-  present.speed = in.monitor->speed > 0.0 ? in.monitor->speed : programmed_.speed;
-  motion_.begin(present);
-}
-
-void Compensator::start_return(const CompensatorInputs& in) noexcept {
-  if (!motion_.move_to(programmed_, motion_time(in.now_ns), settings_.limits, kReturnPace)) return;
-  phase_ = Phase::returning;
-  next_publish_ns_ = in.now_ns;
 }
 
 }  // namespace stillcut

@@ -52,6 +52,8 @@ class Compensator {
  private:
   static constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;  // shorter gaps in the part are of the same cut
 
+  static constexpr double kTurned = 0.05;  // rad, another direction than the programmed one
+
   // acting: a candidate moves and has its time; holding: chatter has ended, its setting stays; returning: slowly back
   // to the program; stopped: a stop was asked for.
   enum class Phase : std::uint8_t { none, acting, holding, returning, stopped };
@@ -67,6 +69,8 @@ class Compensator {
   void retarget_shadow(const CompensatorInputs& in, OutputQueue& out) noexcept;
   void start(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
   void begin_motion(const CompensatorInputs& in) noexcept;
+  void begin_turn_back(const CompensatorInputs& in) noexcept;
+  void follow_turn_back(const CompensatorInputs& in) noexcept;
   bool gives_more_time(const CompensatorInputs& in) noexcept;
   void start_return(const CompensatorInputs& in) noexcept;
   void say_none(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept;
@@ -79,6 +83,8 @@ class Compensator {
   [[nodiscard]] Prediction prediction(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutPlace place(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] CutSetting programmed(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] CutSetting uncorrected(const CompensatorInputs& in) const noexcept;
+  [[nodiscard]] bool is_told_on_its_turn(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] double frequency_of_chatter(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool has_its_time(const CompensatorInputs& in) const noexcept;
   [[nodiscard]] bool deafened(const CompensatorInputs& in) const noexcept;
@@ -98,10 +104,14 @@ class Compensator {
 
   CompensatorSettings settings_;
   Phase phase_ = Phase::none;
-  Candidate candidate_;    // in force, or the last one
-  CutSetting programmed_;  // by the program, when the correction began
-  SettingMotion motion_;   // since began_ns_
-  Attempts attempts_;      // in this cut
+  Candidate candidate_;        // in force, or the last one
+  CutSetting programmed_;      // by the program, when the correction began
+  SettingMotion motion_;       // since began_ns_
+  bool turns_back_ = false;    // released, the feed is on its way back to programmed_; motion_ goes with it
+  bool turn_is_told_ = false;  // the robot tells the direction of the motion, not that of the program
+  double turn_ = 0.0;          // rad, of the feed from the program's, when it was released
+  std::int64_t turn_until_ns_ = 0;
+  Attempts attempts_;  // in this cut
   CorrectionMemory memory_;
   bool remembered_ = false;     // the candidate in force, as one that worked
   bool return_failed_ = false;  // chatter came back on the way to the program: no second time in this cut

@@ -19,7 +19,6 @@ constexpr std::int64_t kPatience_ns =
 constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
 constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
 constexpr std::int64_t kSaturationLasts_ns = 600'000'000;  // of the doubt, after the last sample at the range's end
-constexpr double kTurned = 0.05;                           // rad, another direction than the programmed one
 
 }  // namespace
 
@@ -64,7 +63,7 @@ ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexc
   s.teeth = settings_.teeth;
   s.programmed = programmed(in);
   const bool followed = correcting() && settings_.mode == RuntimeMode::active;
-  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
+  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : correcting() ? s.programmed : uncorrected(in);
   s.set_speed = s.present.speed;
   s.present.speed = heard.speed;
   s.prediction = coming_prediction(in);

@@ -150,6 +150,7 @@ void Compensator::release(const CompensatorInputs& in, const char* reason, Outpu
   c.limited_by = candidate_.limited_by;
   c.reason = short_text(reason);
   out.put(c);
+  if (correcting()) begin_turn_back(in);
   phase_ = Phase::none;
   act_until_ns_ = 0;
   believed_since_ns_ = 0;

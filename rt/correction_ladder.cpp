@@ -123,6 +123,7 @@ Rung feed_rung(const ChatterSituation& s, const Attempts& attempts, const Compen
   Rung rung;
   rung.candidate.kind = CorrectionKind::feed_override;
   rung.candidate.setting = s.present;
+  rung.candidate.setting.feed_direction = s.programmed.feed_direction;  // no message of this kind keeps it turned
   rung.candidate.setting.variation_ratio = rung.candidate.setting.variation_hz = 0.0;
   rung.candidate.setting.speed = speed_to_stay_at(s, limits);
   rung.candidate.setting.feed_factor = std::max(least_by_tool, least_by_range);
@@ -141,6 +142,7 @@ Candidate stop_candidate(const ChatterSituation& s, const Attempts& attempts,
   if (!limits.may_stop || attempts.refused(CorrectionKind::stop_request)) return stop;
   stop.kind = CorrectionKind::stop_request;
   stop.setting = s.present;
+  stop.setting.feed_direction = s.programmed.feed_direction;
   stop.setting.speed = speed_to_stay_at(s, limits);
   stop.setting.variation_ratio = stop.setting.variation_hz = 0.0;
   stop.setting.feed_factor = 0.0;

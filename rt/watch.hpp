@@ -5,6 +5,8 @@
 
 namespace stillcut {
 
+[[nodiscard]] constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
+
 inline void run_watch(std::int64_t& since_ns, bool running, std::int64_t now_ns) noexcept {
   since_ns = !running ? 0 : since_ns == 0 ? now_ns : since_ns;
 }

@@ -1,8 +1,10 @@
 // Prediction, memory and the program: where to, and back again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
+#include "dsp/integrity.hpp"
 #include "dsp/numbers.hpp"
 #include "rt/compensator.hpp"
 #include "tests/rt/compensator_bench.hpp"
@@ -20,6 +22,69 @@ TEST(Compensator, WhereEverySpeedIsPredictedWorseNoneIsAsked) {
     EXPECT_EQ(c.kind, CorrectionKind::feed_override);
     EXPECT_NEAR(c.spindle_speed_rpm, 9000.0, 1e-6);
     EXPECT_NE(c.limited_by & kNoStableSettingKnown, 0);
+  }
+}
+
+// A structure that is stiff from 30 degrees on, at a robot whose feed may turn by 35.
+struct TurningFeed {
+  explicit TurningFeed(bool robot_tells_motion) : tells_motion{robot_tells_motion} {
+    bench.in.controller_alive = true;
+    lobes.direction_count = 12;
+    lobes.direction_speed = rpm_to_rad_s(9000);
+    for (std::size_t i = 0; i < 12; ++i)
+      lobes.directions[i] = {deg_to_rad(15.0 * static_cast<double>(i)), i < 2 || i > 9 ? 0.5e-3 : 4e-3};
+    bench.in.lobes = &lobes;
+    structural.chatter = false;
+    structural.structural = true;
+    structural.structural_frequency_hz = 16.0;
+  }
+  static CompensationLimits limits() {
+    CompensationLimits limits{.spindle = spindle_6000_to_12000(), .spindle_time_constant_s = 0.05};
+    limits.free_turn = deg_to_rad(35);
+    return limits;
+  }
+  void run(double seconds, std::uint32_t doubts) {
+    structural.doubts = doubts;
+    for (int i = 0; i < static_cast<int>(seconds / 0.002); ++i) {
+      bench.run_acknowledged(0.002, structural);
+      const bool turned = !bench.corrections.empty() && bench.corrections.back().kind == CorrectionKind::feed_direction;
+      const double left = (turned ? bench.corrections.back().feed_direction : 0.0) - feed;
+      feed += std::clamp(left, -0.001, 0.001);  // half a rad a second
+      if (tells_motion) bench.in.feed_direction = feed;
+    }
+  }
+
+  LobeDiagram lobes = diagram_of(std::vector<double>(61, 0.5), spindle_6000_to_12000());
+  Bench bench{{RuntimeMode::active, 2, limits()}};
+  MonitorView structural = chattering(0, kNaN);
+  double feed = 0.0;
+  bool tells_motion;
+};
+
+// Released by a doubt the feed turns back, at its own pace: until it is there, where it goes is not the program.
+TEST(Compensator, AFeedThatTurnsBackIsNotTakenForProgrammed) {
+  for (const bool tells_motion : {true, false}) {
+    TurningFeed cut{tells_motion};
+    cut.run(1.3, kNoDoubt);
+    const Correction turned = cut.bench.corrections.back();
+    ASSERT_EQ(turned.kind, CorrectionKind::feed_direction);
+    ASSERT_NEAR(turned.feed_direction, deg_to_rad(30), 1e-6);
+    cut.run(0.1, kGap);
+    ASSERT_EQ(cut.bench.releases(), 1);
+    cut.bench.corrections.clear();
+    cut.run(0.1, kNoDoubt);
+    ASSERT_TRUE(cut.bench.compensator().correcting());
+    for (const Correction& c : cut.bench.corrections) {  // nothing is asked for that jumps from where the feed is
+      EXPECT_FALSE(c.kind == CorrectionKind::feed_direction && c.feed_direction < deg_to_rad(20)) << tells_motion;
+    }
+    cut.run(0.1, kGap);
+    EXPECT_EQ(cut.bench.corrections.back().kind, CorrectionKind::release);
+    EXPECT_NEAR(cut.bench.corrections.back().feed_direction, 0.0, 1e-6) << tells_motion;
+    cut.run(2.0, kGap);  // back
+    cut.bench.corrections.clear();
+    cut.run(1.3, kNoDoubt);
+    EXPECT_EQ(cut.bench.corrections.front().kind, CorrectionKind::feed_direction);
+    EXPECT_NEAR(cut.bench.corrections.back().feed_direction, deg_to_rad(30), 1e-6) << tells_motion;
   }
 }
 
