@@ -93,6 +93,21 @@ TEST(Compensator, WhatAControllerCannotDoIsAskedAgainOnlyOfOneThatIsHeardAnew) {
   EXPECT_EQ(next_cut().front(), Kind::spindle_speed);
 }
 
+// On the way back to the program less feed is still a feed, which is all that this controller takes.
+TEST(Compensator, LessFeedGoesBackAsAFeed) {
+  using Kind = CorrectionKind;
+  Bench bench{RuntimeMode::active};
+  bench.in.controller_alive = true;
+  const LobeDiagram lobes = diagram_of(std::vector<double>(61, 0.9), spindle_6000_to_12000());
+  bench.in.lobes = &lobes;
+  run_at_controller(bench, 1.0, {Kind::feed_override, Kind::stop_request});
+  ASSERT_EQ(bench.corrections.back().kind, Kind::feed_override);
+  bench.in.axial_depth = 0.5e-3;
+  run_at_controller(bench, 15.0, {Kind::feed_override, Kind::stop_request}, false);
+  EXPECT_STREQ(bench.corrections.back().reason.data(), "back at the program");
+  EXPECT_EQ(bench.releases(), 1);
+}
+
 // It is locked rather than unable.
 TEST(Compensator, AControllerThatRefusesEverythingIsLeftAloneUntilTheNextCut) {
   using Kind = CorrectionKind;

@@ -207,6 +207,20 @@ TEST_F(Ladder, LessFeedKeepsToTheToolAndToTheOverride) {
   EXPECT_EQ(next_candidate(cut, attempts, limits).kind, CorrectionKind::stop_request);
 }
 
+// No controller keeps the feed turned for them.
+TEST_F(Ladder, LessFeedAndAStopTurnTheFeedBack) {
+  cut.present.feed_direction = 0.5;
+  using enum CorrectionKind;
+  for (const CorrectionKind kind : {spindle_speed, speed_variation, feed_direction}) attempts.refuse(kind);
+  const Candidate less = next_candidate(cut, attempts, limits);
+  EXPECT_EQ(less.kind, feed_override);
+  EXPECT_EQ(less.setting.feed_direction, cut.programmed.feed_direction);
+  attempts.refuse(feed_override);
+  const Candidate stop = next_candidate(cut, attempts, limits);
+  EXPECT_EQ(stop.kind, stop_request);
+  EXPECT_EQ(stop.setting.feed_direction, cut.programmed.feed_direction);
+}
+
 // Margin of a setting by the words of each choice's header, the swing's own mean apart (variation_choice_test.cpp).
 double predicted_of(const ChatterSituation& s, const Candidate& c) {
   if (c.kind == CorrectionKind::feed_direction)
