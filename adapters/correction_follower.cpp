@@ -19,6 +19,7 @@ constexpr double kStandingSpindle_rpm = 1.0;
 constexpr double kVariationRises_s = 1.0;  // until the full amplitude
 constexpr double kPathTurnsAway = 0.1;     // rad, beyond what we turn it ourselves
 constexpr double kSameRelative = 1e-9;
+constexpr double kSpeedHeldBack = 0.02;  // relative: a difference worth telling
 
 template <class... Values>
 ShortText reason(const char* format, Values... values) {
@@ -91,11 +92,29 @@ std::optional<Answer> CorrectionFollower::receive(const Correction& correction, 
       path_direction_ = programmed_direction();
     correction_ = correction;
     expires_ns_ = now_ns + static_cast<std::int64_t>((1e-3 * correction.valid_for_ms - age) * 1e9);
-    if (moves_spindle() && correction.feed_override > settings_.max_feed_override * (1.0 + kSameRelative))
-      answer.reason =
-          reason("feed override %.2f is held at %.2f", correction.feed_override, settings_.max_feed_override);
+    answer.reason = held_back_of(correction);
   }
   return answer;
+}
+
+// With a kind that says nothing of the speed, what a controller without speeds, or a spindle that stands, cannot follow
+// is held at the program's.
+bool CorrectionFollower::carries_speed(const Correction& c) const {
+  if (c.kind == CorrectionKind::spindle_speed || c.kind == CorrectionKind::speed_variation) return true;
+  const bool names_it = !std::isnan(c.spindle_speed_rpm) && c.spindle_speed_rpm != 0.0;
+  return names_it && takes(CorrectionKind::spindle_speed) && program_.spindle_speed_rpm >= kStandingSpindle_rpm;
+}
+
+// What of an accepted correction is not followed as asked.
+ShortText CorrectionFollower::held_back_of(const Correction& c) const {
+  if (carries_speed(c)) {
+    if (c.feed_override <= settings_.max_feed_override * (1.0 + kSameRelative)) return {};
+    return reason("feed override %.2f is held at %.2f", c.feed_override, settings_.max_feed_override);
+  }
+  const bool other_speed = std::abs(c.spindle_speed_rpm - program_.spindle_speed_rpm) >
+                           kSpeedHeldBack * program_.spindle_speed_rpm;  // false for NaN
+  if (c.spindle_speed_rpm == 0.0 || !other_speed) return {};
+  return reason("spindle speed %.0f is held at the program's %.0f", c.spindle_speed_rpm, program_.spindle_speed_rpm);
 }
 
 ShortText CorrectionFollower::reason_to_refuse(const Correction& c, double age) const {
@@ -106,16 +125,19 @@ ShortText CorrectionFollower::reason_to_refuse(const Correction& c, double age) 
   if (c.kind == CorrectionKind::release || c.kind == CorrectionKind::stop_request) return {};
   if (held_back_ != nullptr) return short_text(held_back_);
   if (stopped_) return short_text("stopped; start the program again at the controller");
-  switch (c.kind) {
-    case CorrectionKind::spindle_speed:
-    case CorrectionKind::speed_variation:
-      return reason_against_speed(c);
-    case CorrectionKind::feed_direction:
-      return reason_against_turn(c);
-    default:
-      if (lies_within(c.feed_override, settings_.min_feed_override, settings_.max_feed_override)) return {};
-      return reason("feed_override is not from %.2f to %.2f", settings_.min_feed_override, settings_.max_feed_override);
-  }
+  ShortText against{};
+  if (c.kind == CorrectionKind::feed_direction) against = reason_against_turn(c);
+  if (c.kind == CorrectionKind::feed_override) against = reason_against_feed(c);
+  if (against[0] != '\0' || !carries_speed(c)) return against;
+  return reason_against_speed(c);
+}
+
+// More than the controller takes is asked for only beside a faster spindle, and is then held.
+ShortText CorrectionFollower::reason_against_feed(const Correction& c) const {
+  const double keeps_feed = carries_speed(c) ? c.spindle_speed_rpm / program_.spindle_speed_rpm : 0.0;
+  const double highest = std::max(settings_.max_feed_override, keeps_feed);
+  if (lies_within(c.feed_override, settings_.min_feed_override, highest)) return {};
+  return reason("feed_override is not from %.2f to %.2f", settings_.min_feed_override, settings_.max_feed_override);
 }
 
 ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
@@ -125,7 +147,7 @@ ShortText CorrectionFollower::reason_against_speed(const Correction& c) const {
   if (!lies_within(c.feed_override, settings_.min_feed_override, kHighestOverride))
     return reason("feed_override is below %.2f, or no number", settings_.min_feed_override);
   // A variation whose mean is yet to be reached does not swing.
-  if (c.kind == CorrectionKind::spindle_speed || c.speed_variation_ratio == 0.0) return {};
+  if (c.kind != CorrectionKind::speed_variation || c.speed_variation_ratio == 0.0) return {};
   if (!(c.speed_variation_ratio > 0.0 && c.speed_variation_ratio <= settings_.max_variation_ratio))
     return reason("speed_variation_ratio is not above 0 and up to %.2f", settings_.max_variation_ratio);
   if (!(c.speed_variation_hz > 0.0 && c.speed_variation_hz <= settings_.max_variation_hz))
@@ -153,6 +175,9 @@ double CorrectionFollower::programmed_direction() const {
 
 ShortText CorrectionFollower::reason_against_turn(const Correction& c) const {
   if (!std::isfinite(c.feed_direction)) return short_text("feed_direction_rad is no number");
+  if (takes(CorrectionKind::feed_override) &&
+      !lies_within(c.feed_override, settings_.min_feed_override, kHighestOverride))
+    return reason("feed_override is below %.2f, or no number", settings_.min_feed_override);
   if (!(program_.feed_rate_m_per_s > 0.0)) return short_text("the tool does not move, its feed direction is not known");
   const bool goes_on = follows(CorrectionKind::feed_direction);
   const double turn =
@@ -208,7 +233,7 @@ void CorrectionFollower::move_spindle(double step) {
 
 void CorrectionFollower::move_feed(double step) {
   double target = 1.0;
-  if (moves_spindle() || follows(CorrectionKind::feed_override))
+  if (moves_spindle() || (correction_ && takes(CorrectionKind::feed_override)))
     target = std::min(correction_->feed_override, settings_.max_feed_override);
   if (stopped_) target = 0.0;
   feed_ = toward(feed_, target, (target < feed_ ? settings_.feed_fall_per_s : settings_.feed_rise_per_s) * step);

@@ -1,6 +1,9 @@
 // What becomes of Stillcut's corrections at a controller: which are followed, which are refused and why, and what to
 // ask of spindle and feed at each cycle of the controller.
 //
+// A feed direction or a feed override carries the spindle speed with which it was chosen, 0 or no number for the
+// programmed one: a speed that is in force stays.
+//
 // A correction is followed until valid_for_ms after its receipt, then the setpoint returns to the program by itself.
 // Setpoints move at bounded rates: the feed falls fast and rises slowly, the spindle follows as fast as the cell says
 // and comes back at a fifth of that, and the feed per tooth never exceeds both the programmed one and the one asked
@@ -87,6 +90,7 @@ class CorrectionFollower {
   double age_s(const Correction& correction, std::int64_t now_ns);
   [[nodiscard]] ShortText reason_to_refuse(const Correction& correction, double age) const;
   [[nodiscard]] ShortText reason_against_speed(const Correction& correction) const;
+  [[nodiscard]] ShortText reason_against_feed(const Correction& correction) const;
   [[nodiscard]] ShortText reason_against_turn(const Correction& correction) const;
   [[nodiscard]] double turn_to(double direction) const;  // rad, from the program's path
   [[nodiscard]] double programmed_direction() const;
@@ -94,9 +98,12 @@ class CorrectionFollower {
   void move_feed(double step);
   void move_path(double step);
   [[nodiscard]] bool follows(CorrectionKind kind) const { return correction_ && correction_->kind == kind; }
-  [[nodiscard]] bool moves_spindle() const {
-    return follows(CorrectionKind::spindle_speed) || follows(CorrectionKind::speed_variation);
+  [[nodiscard]] bool takes(CorrectionKind kind) const {
+    return settings_.refusals.at(static_cast<std::size_t>(kind)) == nullptr;
   }
+  [[nodiscard]] bool carries_speed(const Correction& correction) const;
+  [[nodiscard]] bool moves_spindle() const { return correction_ && carries_speed(*correction_); }
+  [[nodiscard]] ShortText held_back_of(const Correction& correction) const;
 
   FollowerSettings settings_;
   ProgramState program_;

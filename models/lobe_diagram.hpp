@@ -48,6 +48,10 @@ struct LobeDiagram {
 
 static_assert(std::is_trivially_copyable_v<LobeDiagram>);
 
+// Where a speed (rad/s) lies among the points of a diagram, in spacings from the first one on: the whole part is the
+// index of the point below, the rest how far it is on the way to the next. NaN outside, or without a diagram.
+double place_among_points(const LobeDiagram& diagram, double speed) noexcept;
+
 // Depth limit at a speed (rad/s): the smaller of the two points beside it, 0 where every depth is unstable, +inf where
 // none is, NaN outside the diagram or without one. Constant time, fit for the loop.
 double depth_limit_at(const LobeDiagram& diagram, double speed) noexcept;

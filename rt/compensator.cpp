@@ -5,82 +5,38 @@
 
 #include "dsp/integrity.hpp"
 #include "dsp/numbers.hpp"
+#include "rt/watch.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000, kUnpredictedFaintWaits_ns = 3'000'000'000;
-constexpr double kBeyondDoubt = 3.0;  // of the indicator
-constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
-constexpr std::int64_t kPatience_ns =
-    6'000'000'000;  // of chatter that goes on whatever is tried; then only a stop is left
-constexpr std::int64_t kPatienceDeaf_ns = 3'000'000'000;
-constexpr std::int64_t kAnswerWithin_ns = 1'000'000'000;
-constexpr std::int64_t kAirEndsCut_ns = 1'000'000'000;    // shorter gaps in the part are of the same cut
 constexpr std::int64_t kQuietHasWorked_ns = 500'000'000;  // after which a correction is remembered
-constexpr std::int64_t kQuietAsksAnew_ns = 2'000'000'000;
 constexpr std::int64_t kQuietMayReturn_ns = 2'000'000'000;
 constexpr std::int64_t kSafeMayReturn_ns = 1'000'000'000;  // the way out of the part is none
-constexpr std::int64_t kSaturatedIsChatter_ns = 50'000'000;
 constexpr double kShadowRetarget = 0.03;  // in shadow nothing moves; follow the frequency in steps of this size
 constexpr std::int64_t kShadowAct_ns = 150'000'000;
 constexpr double kLastsTimeConstants = 4.0, kLasts_s = 0.1;                // until the effect is there
 constexpr double kMostSettling_s = 0.5, kMostSettlingOfStructure_s = 2.5;  // and until the vibration has died out
-constexpr double kTurned = 0.05, kPathTurned = 0.15;                       // rad
-constexpr double kProgramChanged = 0.02;                                   // relative, of the programmed speed
 constexpr double kFallen = 0.1, kTolerated = 2.0;                          // of the loudest; of what was left
 constexpr double kFalls = 0.7;                                             // from one look to the next
 constexpr std::int64_t kLookAgain_ns = 300'000'000, kDoubtLooksAgain_ns = 1'000'000'000;
 constexpr double kSwingsToAct = 2.0;
-constexpr double kReturnPace = 0.1;      // of the limits: recover slowly
-constexpr double kSafeToReturn = 0.1;    // margin at the program, with its scatter against it
-constexpr double kBetterThanThen = 0.2;  // margin over the one with which it chattered
-constexpr double kMuchShallower = 0.7;   // of the depth that chattered against the prediction
-
-constexpr std::int64_t to_ns(double seconds) noexcept { return static_cast<std::int64_t>(seconds * 1e9); }
-
-// Starts or stops a watch whose 0 means that it does not run.
-void run_watch(std::int64_t& since_ns, bool running, std::int64_t now_ns) noexcept {
-  since_ns = !running ? 0 : since_ns == 0 ? now_ns : since_ns;
-}
-bool has_run(std::int64_t since_ns, std::int64_t now_ns, std::int64_t long_ns) noexcept {
-  return since_ns != 0 && now_ns - since_ns >= long_ns;
-}
 
 }  // namespace
 
-void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
-  if (ack.sequence < first_sequence_ || ack.sequence > sequence_) return;  // no answer to what is asked now
-  if (ack.accepted) {
-    answered_ns_ = std::max(answered_ns_, ack.stamp_ns);
-  } else if (candidate_.kind == CorrectionKind::spindle_speed || phase_ == Phase::none) {
-    refused_ = true;
-  } else {  // not every controller can do every kind
-    attempts_.refuse(candidate_.kind);
-  }
-}
-
-// Why nothing may be asked of the controller now; nullptr when all conditions hold.
-const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
-  if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !deafened(in)) return "the monitor cannot tell";
-  if (settings_.mode != RuntimeMode::active) return nullptr;
-  if (!in.controller_alive) return "controller silent";
-  if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) refused_ = true;
-  // Quiet for a while: a new question.
-  if (!correcting() && has_run(unheard_since_ns_, in.now_ns, kQuietAsksAnew_ns)) refused_ = false;
-  return refused_ ? "controller refused or did not answer" : nullptr;
-}
-
 void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (settings_.mode == RuntimeMode::off) return;
+  meet_controller(in);
+  follow_turn_back(in);
+  tell_refusal(in, out);
   const State state = in.monitor->state;
   run_watch(air_since_ns_, state == State::air || state == State::idle, in.now_ns);
   run_watch(unheard_since_ns_, !is_heard(in), in.now_ns);
   run_watch(saturated_since_ns_, in.monitor->doubts == kSaturated && air_since_ns_ == 0, in.now_ns);
   if (const char* reason = reason_to_hold_back(in)) {
     // Where the sensor is beyond its range at the new setting as well, that is no second time the answer.
-    if (correcting() && in.monitor->doubts == kSaturated) attempts_.add(candidate_, in.axial_depth);
+    const bool at_setting = phase_ == Phase::acting || phase_ == Phase::holding;
+    if (at_setting && in.monitor->doubts == kSaturated) give_up_candidate(in);
     if (!held_back_) release(in, reason, out);
     held_back_ = true;
     chatter_since_ns_ = quiet_since_ns_ = 0;
@@ -95,6 +51,8 @@ void Compensator::step(const CompensatorInputs& in, OutputQueue& out) noexcept {
   if (correcting() && program_changed(in)) return release(in, "the program changed", out);
   if (phase_ == Phase::stopped) {
     follow_stop(in, out);
+  } else if (correcting() && attempts_.refused(candidate_.kind)) {
+    leave_what_is_refused(in, out);
   } else if (chatter) {
     hear_chatter(in, out);
   } else {
@@ -107,7 +65,7 @@ void Compensator::hear_nothing(const CompensatorInputs& in, OutputQueue& out) no
   said_none_ = false;
   if (has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns)) {
     if (correcting()) release(in, "cut is over", out);
-    attempts_.clear();
+    attempts_.end_cut();
     return_failed_ = false;
     return;
   }
@@ -129,20 +87,22 @@ void Compensator::hear_chatter(const CompensatorInputs& in, OutputQueue& out) no
     return start(in, Candidate{candidate_}, out);
   }
   loudest_ = std::max(loudest_, heard.chatter ? heard.chatter_amplitude : 0.0);
-  const bool acting = phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  const bool refused = correcting() && attempts_.refused(candidate_.kind);
+  const bool acting = has_its_time(in);
   const bool looked_in_vain = phase_ == Phase::none && in.now_ns < act_until_ns_;
-  if ((acting && !refused) || looked_in_vain) return;
+  if (acting || looked_in_vain) return;
   if (!tool_chatters(in) && !structure_chatters(in)) return;
   if (correcting() && settings_.mode == RuntimeMode::shadow) return retarget_shadow(in, out);
-  if (correcting() && !refused && gives_more_time(in)) return;
-  if (correcting() && !refused) {  // it had its time and did not help: the next one
-    attempts_.add(candidate_, in.axial_depth);
-    memory_.forget(place(in));
-  }
+  if (correcting() && gives_more_time(in)) return;
+  if (correcting()) give_up_candidate(in);  // it had its time and did not help: the next one
+  ask_next(in, out);
+}
+
+void Compensator::ask_next(const CompensatorInputs& in, OutputQueue& out) noexcept {
   const ChatterSituation now = situation(in);
   const Candidate next = next_candidate(now, attempts_, settings_.limits);
   if (next.kind == CorrectionKind::release && now.doubtful) {  // what is set is predicted stable: it stays
+    if (correcting() && attempts_.refused(candidate_.kind))
+      release(in, with_refusal("the controller refuses").data(), out);
     if (correcting()) phase_ = Phase::acting;
     act_until_ns_ = in.now_ns + kDoubtLooksAgain_ns;
     return;
@@ -178,63 +138,6 @@ void Compensator::retarget_shadow(const CompensatorInputs& in, OutputQueue& out)
   if (same_kind && change > kShadowRetarget * candidate_.setting.speed) start(in, next, out);
 }
 
-// A sensor that a cut drives beyond its range cannot be listened to. Where chatter is predicted, or was heard and is
-// being corrected, there is no doubt about what drives it: it is chatter without a line.
-bool Compensator::deafened(const CompensatorInputs& in) const noexcept {
-  if (in.monitor->doubts != kSaturated || air_since_ns_ != 0) return false;
-  const bool corrects = phase_ == Phase::acting && in.now_ns < act_until_ns_;
-  return corrects || (has_run(saturated_since_ns_, in.now_ns, kSaturatedIsChatter_ns) &&
-                      margin_at(coming_prediction(in), in.monitor->speed) < 0.0);
-}
-
-// A stop is asked for until the tool is out of the part, or the controller does not take it.
-void Compensator::follow_stop(const CompensatorInputs& in, OutputQueue& out) noexcept {
-  const bool over = has_run(air_since_ns_, in.now_ns, kAirEndsCut_ns);
-  if (over) attempts_.clear();
-  if (over) {
-    release(in, "stopped, and the cut is over", out);
-  } else if (attempts_.refused(CorrectionKind::stop_request)) {
-    release(in, "the controller does not stop", out);
-    said_none_ = true;
-  }
-}
-
-// A correction belongs to the program that it was chosen for: another programmed speed, or a path that takes a turned
-// feed elsewhere, ends it.
-bool Compensator::program_changed(const CompensatorInputs& in) const noexcept {
-  if (phase_ == Phase::stopped) return false;
-  const bool speed = in.nominal_speed > 0.0 && nominal_speed_ > 0.0 &&
-                     std::abs(in.nominal_speed - nominal_speed_) > kProgramChanged * nominal_speed_;
-  if (candidate_.kind != CorrectionKind::feed_direction || motion_time(in.now_ns) < motion_.arrives_at()) return speed;
-  // Controllers tell the direction of the program or that of the motion.
-  const auto away = [&](double direction) {
-    return std::abs(std::remainder(in.feed_direction - direction, kTwoPi)) > kPathTurned;
-  };
-  return speed || (away(motion_.target().feed_direction) && away(programmed_.feed_direction));
-}
-
-// As found when the correction began; before, as it is now. A programmed speed that the spindle cannot turn is none.
-CutSetting Compensator::programmed(const CompensatorInputs& in) const noexcept {
-  if (correcting()) return programmed_;
-  const SpindleLimits& spindle = settings_.limits.spindle;
-  CutSetting program;
-  const bool programmed = in.nominal_speed >= spindle.min_speed && in.nominal_speed <= spindle.max_speed;
-  program.speed = programmed ? in.nominal_speed : std::clamp(in.monitor->speed, spindle.min_speed, spindle.max_speed);
-  program.feed_direction = in.feed_direction;
-  return program;
-}
-
-Prediction Compensator::prediction(const CompensatorInputs& in) const noexcept {
-  return {in.lobes, in.lobes_ahead, in.axial_depth};
-}
-
-// For the depth that the cut is on its way to: a pocket that is left again by the deeper cut is none.
-Prediction Compensator::coming_prediction(const CompensatorInputs& in) const noexcept {
-  Prediction coming = prediction(in);
-  coming.axial_depth = in.coming_depth;
-  return coming;
-}
-
 CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   const CutSetting program = programmed(in);
   CutPlace place;
@@ -248,90 +151,18 @@ CutPlace Compensator::place(const CompensatorInputs& in) const noexcept {
   return place;
 }
 
-ChatterSituation Compensator::situation(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  ChatterSituation s;
-  s.structural = !tool_chatters(in) || heard.kind == ChatterKind::structural;
-  s.chatter_frequency_hz = frequency_of_chatter(in);
-  s.vibration_hz = s.structural ? heard.structural_frequency_hz : heard.chatter_frequency_hz;
-  s.doubtful = is_contradicted(in) && !(heard.indicator >= kBeyondDoubt);
-  s.deafened = in.monitor->doubts != kNoDoubt;
-  s.patience_is_out =
-      settings_.mode == RuntimeMode::active && (has_run(believed_since_ns_, in.now_ns, kPatience_ns) ||
-                                                has_run(saturated_since_ns_, in.now_ns, kPatienceDeaf_ns));
-  s.teeth = settings_.teeth;
-  s.programmed = programmed(in);
-  const bool followed = correcting() && settings_.mode == RuntimeMode::active;
-  s.present = followed ? motion_.at(motion_time(in.now_ns)).now : s.programmed;
-  s.set_speed = s.present.speed;
-  s.present.speed = heard.speed;
-  s.prediction = coming_prediction(in);
-  // A feed that was turned brings its own lobes; those of the program, to which every other candidate returns, are not
-  // known.
-  if (std::abs(s.present.feed_direction - s.programmed.feed_direction) > kTurned) {
-    s.prediction.here = s.prediction.ahead = nullptr;
-  }
-  s.remembered = memory_.recall(place(in));
-  return s;
-}
-
-// NaN where the tool is thrown about without a line.
-double Compensator::frequency_of_chatter(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (!heard.chatter || !heard.single_line) return kNaN;
-  return in.lobes == nullptr ? heard.chatter_frequency_hz
-                             : base_frequency(*in.lobes, heard.speed, settings_.teeth, heard.chatter_frequency_hz);
-}
-
-// Whether what is heard is predicted not to be: by the lobes, or by a robot that is out of the part.
-bool Compensator::is_contradicted(const CompensatorInputs& in) const noexcept {
-  return in.coming_depth <= 0.0 || safe_margin_at(coming_prediction(in), in.monitor->speed) > 0.0;
-}
-
-// Loud, and for so long as it takes to be believed: at once where chatter is predicted. Elsewhere a line of unknown
-// kind may be forced, and a burst be that of an entry.
-bool Compensator::tool_chatters(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (deafened(in)) return true;
-  if (!heard.chatter || !(heard.indicator >= 1.0)) return false;
-  const Prediction coming = coming_prediction(in);
-  if (margin_at(coming, heard.speed) < 0.0) return true;
-  const bool unknown = heard.kind == ChatterKind::unknown;
-  const bool faint = !(heard.indicator >= kBeyondDoubt);
-  const std::int64_t lasts_ns = !is_contradicted(in) ? (unknown ? kUnknownKindWaits_ns : 0)
-                                : unknown || faint   ? kUnpredictedFaintWaits_ns
-                                                     : kUnpredictedWaits_ns;
-  return has_run(chatter_since_ns_, in.now_ns, lasts_ns);
-}
-
-// What sounds like chatter of the structure may be the sweep of a changing speed: it has to be at a mode of the
-// structure, where those are known, and to last, where none is predicted.
-bool Compensator::structure_chatters(const CompensatorInputs& in) const noexcept {
-  const MonitorView& heard = *in.monitor;
-  if (!heard.structural) return false;
-  if (in.lobes != nullptr && in.lobes->mode_count > 0 && !is_at_a_mode(*in.lobes, heard.structural_frequency_hz))
-    return false;
-  return !is_contradicted(in) || has_run(chatter_since_ns_, in.now_ns, kUnpredictedStructureWaits_ns);
-}
-
-// The program is safe again: less deep, another posture, another direction. Where the prediction called safe what then
-// chattered, only less depth counts.
-bool Compensator::reason_is_gone(const CompensatorInputs& in) const noexcept {
-  if (return_failed_ || settings_.mode != RuntimeMode::active) return false;
-  const Prediction now = prediction(in);
-  if (!(safe_margin_at(now, programmed_.speed) > kSafeToReturn)) return false;
-  // The lobes are those of the direction that the feed now has.
-  const bool turned = candidate_.kind == CorrectionKind::feed_direction;
-  if (turned || !(chatter_margin_ < 0.0)) return in.axial_depth < kMuchShallower * chatter_depth_;
-  return margin_at(now, programmed_.speed) > chatter_margin_ + kBetterThanThen;
-}
-
 void Compensator::remember(const CompensatorInputs& in) noexcept {
   if (remembered_ || settings_.mode != RuntimeMode::active || candidate_.kind != CorrectionKind::spindle_speed) return;
   remembered_ = true;
   CutPlace there = place(in);
   there.axial_depth = chatter_depth_;
-  memory_.keep({there, candidate_.kind, candidate_.setting});
+  memory_.keep({there, candidate_.setting});
+}
+
+// It was tried and did not help: not again at this depth, nor, if it is what worked here before, the next time.
+void Compensator::give_up_candidate(const CompensatorInputs& in) noexcept {
+  attempts_.add(candidate_, in.axial_depth);
+  if (remembered_) memory_.forget(place(in), candidate_.setting.speed);
 }
 
 std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noexcept {
@@ -342,20 +173,6 @@ std::int64_t Compensator::time_to_act_ns(const CompensatorInputs& in) const noex
   s += std::min(candidate_.setting.variation_hz > 0.0 ? 0.0 : candidate_.settle_s, most);
   if (candidate_.setting.variation_hz > 0.0) s += kSwingsToAct / candidate_.setting.variation_hz;
   return to_ns(s);
-}
-
-void Compensator::begin_motion(const CompensatorInputs& in) noexcept {
-  programmed_ = programmed(in);
-  began_ns_ = in.now_ns;
-  CutSetting present = programmed_;
-  present.speed = in.monitor->speed > 0.0 ? in.monitor->speed : programmed_.speed;
-  motion_.begin(present);
-}
-
-void Compensator::start_return(const CompensatorInputs& in) noexcept {
-  if (!motion_.move_to(programmed_, motion_time(in.now_ns), settings_.limits, kReturnPace)) return;
-  phase_ = Phase::returning;
-  next_publish_ns_ = in.now_ns;
 }
 
 }  // namespace stillcut

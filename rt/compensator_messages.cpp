@@ -10,9 +10,10 @@ namespace stillcut {
 namespace {
 
 constexpr std::int32_t kValidFor_ms = 500;
+constexpr const char* kNothingKnown = "no stable setting known";
 constexpr std::int64_t kPublishMoving_ns = 10'000'000, kPublishHolding_ns = 100'000'000;
 
-const char* name_of(RuntimeMode mode) noexcept { return mode == RuntimeMode::active ? "active" : "shadow"; }
+const char* mode_text(RuntimeMode mode) noexcept { return mode == RuntimeMode::active ? "active" : "shadow"; }
 
 // One line that says what is done and on what grounds.
 ShortText describe_candidate(const Candidate& c) noexcept {
@@ -53,9 +54,12 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
     chatter_depth_ = in.axial_depth;
     chatter_margin_ = margin_at(coming_prediction(in), programmed_.speed);
   }
+  before_ = motion_.at(motion_time(in.now_ns)).now;
   if (!motion_.move_to(candidate.setting, motion_time(in.now_ns), settings_.limits, 1.0)) return;
   first_sequence_ = sequence_ + 1;
   candidate_ = candidate;
+  asked_ = candidate.kind;
+  taken_ = false;
   checked_ = kInfinity;
   tolerated_ = 0.0;
   believed_since_ns_ = believed_since_ns_ == 0 ? in.now_ns : believed_since_ns_;
@@ -71,10 +75,11 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
   ShortText note{};
   if (candidate.kind == CorrectionKind::spindle_speed && candidate.lobe > 0) {
     std::snprintf(note.data(), note.size(), "%s k=%d from=%.0f margin_before=%.2f margin_after=%.2f",
-                  name_of(settings_.mode), candidate.lobe, rad_s_to_rpm(heard.speed), candidate.margin_before,
+                  mode_text(settings_.mode), candidate.lobe, rad_s_to_rpm(heard.speed), candidate.margin_before,
                   candidate.margin_after);
   } else {
-    std::snprintf(note.data(), note.size(), "%s %.80s", name_of(settings_.mode), describe_candidate(candidate).data());
+    std::snprintf(note.data(), note.size(), "%s %.80s", mode_text(settings_.mode),
+                  describe_candidate(candidate).data());
   }
   const bool has_speed = candidate.kind != CorrectionKind::stop_request;
   out.put(Event{heard.stamp_ns, EventType::correction, ChatterKind::unknown, chatter_frequency_hz_, heard.indicator,
@@ -83,12 +88,13 @@ void Compensator::start(const CompensatorInputs& in, const Candidate& candidate,
 
 void Compensator::say_none(const CompensatorInputs& in, const Candidate& candidate, OutputQueue& out) noexcept {
   candidate_.limited_by = candidate.limited_by | kNoStableSettingKnown;
-  release(in, "no stable setting known", out);
+  const bool refused = refusal_[0] != '\0';
+  release(in, refused ? with_refusal("nothing is left that the controller takes").data() : kNothingKnown, out);
   said_none_ = true;
   const MonitorView& heard = *in.monitor;
   out.put(Event{heard.stamp_ns, EventType::correction, ChatterKind::unknown,
                 heard.chatter ? heard.chatter_frequency_hz : heard.structural_frequency_hz, heard.indicator, kNaN,
-                short_text("no stable setting known")});
+                short_text(kNothingKnown)});
 }
 
 void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcept {
@@ -98,11 +104,12 @@ void Compensator::publish(const CompensatorInputs& in, OutputQueue& out) noexcep
   next_publish_ns_ = in.now_ns + (moving ? kPublishMoving_ns : kPublishHolding_ns);
   Correction c;
   c.stamp_ns = in.now_ns;
-  c.sequence = ++sequence_;
+  c.sequence = last_asked_sequence_ = ++sequence_;
   c.valid_for_ms = kValidFor_ms;
   c.mode = settings_.mode;
-  const bool turned = candidate_.kind == CorrectionKind::feed_direction;
-  c.kind = returning && !turned ? CorrectionKind::spindle_speed : candidate_.kind;
+  // A variation ends at once; a direction, a feed or a speed goes back as what it is: that the controller takes.
+  const bool varied = candidate_.kind == CorrectionKind::speed_variation;
+  c.kind = returning && varied ? CorrectionKind::spindle_speed : candidate_.kind;
   const double speed = std::clamp(now.speed, limits.spindle.min_speed, limits.spindle.max_speed);
   c.spindle_speed_rpm = rad_s_to_rpm(speed);
   c.spindle_speed_target_rpm = rad_s_to_rpm(motion_.target().speed);
@@ -143,6 +150,7 @@ void Compensator::release(const CompensatorInputs& in, const char* reason, Outpu
   c.limited_by = candidate_.limited_by;
   c.reason = short_text(reason);
   out.put(c);
+  if (correcting()) begin_turn_back(in);
   phase_ = Phase::none;
   act_until_ns_ = 0;
   believed_since_ns_ = 0;

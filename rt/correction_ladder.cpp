@@ -123,6 +123,7 @@ Rung feed_rung(const ChatterSituation& s, const Attempts& attempts, const Compen
   Rung rung;
   rung.candidate.kind = CorrectionKind::feed_override;
   rung.candidate.setting = s.present;
+  rung.candidate.setting.feed_direction = s.programmed.feed_direction;  // no message of this kind keeps it turned
   rung.candidate.setting.variation_ratio = rung.candidate.setting.variation_hz = 0.0;
   rung.candidate.setting.speed = speed_to_stay_at(s, limits);
   rung.candidate.setting.feed_factor = std::max(least_by_tool, least_by_range);
@@ -141,6 +142,7 @@ Candidate stop_candidate(const ChatterSituation& s, const Attempts& attempts,
   if (!limits.may_stop || attempts.refused(CorrectionKind::stop_request)) return stop;
   stop.kind = CorrectionKind::stop_request;
   stop.setting = s.present;
+  stop.setting.feed_direction = s.programmed.feed_direction;
   stop.setting.speed = speed_to_stay_at(s, limits);
   stop.setting.variation_ratio = stop.setting.variation_hz = 0.0;
   stop.setting.feed_factor = 0.0;
@@ -152,18 +154,16 @@ Rung remembered_rung(const ChatterSituation& s, const Attempts& attempts, const 
   if (s.remembered == nullptr) return {};
   const CutSetting& setting = s.remembered->setting;
   const Attempts::Speeds tried = attempts.speeds(s.prediction.axial_depth);
-  const bool was_tried =
-      std::any_of(tried.speed.begin(), tried.speed.begin() + static_cast<std::ptrdiff_t>(tried.count),
-                  [&](double speed) { return std::abs(speed - setting.speed) < 0.01 * speed; });
+  const bool failed = was_tried({tried.speed.data(), tried.count}, setting.speed);
   const bool is_there = std::abs(setting.speed - s.present.speed) < kSameSpeedAsRemembered * s.present.speed;
   const double now = margin_at(s.prediction, s.present.speed), there = margin_at(s.prediction, setting.speed);
   const bool predicted_worse = !std::isnan(now) && !(there > now && there > 0.0);
-  if (s.remembered->kind != CorrectionKind::spindle_speed || s.structural || s.deafened || was_tried || is_there ||
-      predicted_worse || attempts.refused(CorrectionKind::spindle_speed) || !may_stay_at(limits, setting.speed) ||
+  if (s.structural || s.deafened || failed || is_there || predicted_worse ||
+      attempts.refused(CorrectionKind::spindle_speed) || !may_stay_at(limits, setting.speed) ||
       !keeps_feed_per_tooth(limits, setting.speed, s.programmed.speed))
     return {};
   Rung rung;
-  rung.candidate.kind = s.remembered->kind;
+  rung.candidate.kind = CorrectionKind::spindle_speed;
   rung.candidate.setting = s.programmed;
   rung.candidate.setting.speed = setting.speed;
   rung.candidate.remembered = true;

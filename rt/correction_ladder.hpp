@@ -31,12 +31,18 @@ struct Candidate {
 class Attempts {
  public:
   void add(const Candidate& candidate, double axial_depth) noexcept;
-  void refuse(CorrectionKind kind) noexcept { refused_ |= 1U << static_cast<unsigned>(kind); }
-  void clear() noexcept { *this = {}; }
-
-  [[nodiscard]] bool refused(CorrectionKind kind) const noexcept {
-    return (refused_ >> static_cast<unsigned>(kind) & 1U) != 0;
+  // The controller takes this kind, or does not.
+  void accept(CorrectionKind kind) noexcept { accepted_ |= bit_of(kind); }
+  void refuse(CorrectionKind kind) noexcept { refused_ |= bit_of(kind); }
+  // The next cut is another question. But a kind that the controller has never taken while it takes others it cannot
+  // do; a stop is asked for whatever it said.
+  void end_cut() noexcept {
+    count_ = 0;
+    refused_ = accepted_ == 0 ? 0 : refused_ & ~accepted_ & ~bit_of(CorrectionKind::stop_request);
   }
+  void forget_refusals() noexcept { refused_ = accepted_ = 0; }
+
+  [[nodiscard]] bool refused(CorrectionKind kind) const noexcept { return (refused_ & bit_of(kind)) != 0; }
   [[nodiscard]] int count(CorrectionKind kind, double axial_depth) const noexcept;
 
   static constexpr std::size_t kMost = 16;
@@ -52,8 +58,10 @@ class Attempts {
     double speed = 0.0, axial_depth = 0.0;
   };
   std::array<Attempt, kMost> attempts_{};
+  static constexpr unsigned bit_of(CorrectionKind kind) noexcept { return 1U << static_cast<unsigned>(kind); }
+
   std::size_t count_ = 0;
-  unsigned refused_ = 0;
+  unsigned refused_ = 0, accepted_ = 0;
 };
 
 struct ChatterSituation {

@@ -10,6 +10,7 @@ namespace {
 constexpr double kSamePostureRad = 0.1, kSamePostureM = 0.05;  // within it the modes are the same to a few per cent
 constexpr double kSameProgrammedSpeed = 0.02, kSameDirectionRad = 0.1;
 constexpr double kNotMuchDeeper = 1.1;
+constexpr double kSameSpeed = 0.005;  // relative, of the speed that worked
 
 double angle_between(double a, double b) noexcept { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
 
@@ -40,9 +41,13 @@ void CorrectionMemory::keep(const Remembered& worked) noexcept {
   places_[i] = worked;
 }
 
-void CorrectionMemory::forget(const CutPlace& place) noexcept {
-  // Places run into one another, so several may be near; one without a speed is found no more.
-  for (std::size_t i = find(place); i < count_; i = find(place)) places_[i].place.programmed_speed = 0.0;
+void CorrectionMemory::forget(const CutPlace& place, double speed) noexcept {
+  // Places run into one another, so several may be near; one without a programmed speed is found no more.
+  for (std::size_t i = 0; i < count_; ++i) {
+    Remembered& known = places_[i];
+    if (same_place(known.place, place) && std::abs(known.setting.speed - speed) < kSameSpeed * speed)
+      known.place.programmed_speed = 0.0;
+  }
 }
 
 const Remembered* CorrectionMemory::recall(const CutPlace& place) const noexcept {

@@ -1,5 +1,5 @@
-// What worked where: the corrections that ended chatter, kept by posture, programmed speed and feed direction, so that
-// the same corner of the next part is answered at once with what helped before. Fixed size, the oldest goes first;
+// What worked where: the spindle speeds that ended chatter, kept by posture, programmed speed and feed direction, so
+// that the same corner of the next part is answered at once with what helped before. Fixed size, the oldest goes first;
 // noexcept, for the loop.
 #pragma once
 
@@ -20,7 +20,6 @@ struct CutPlace {
 
 struct Remembered {
   CutPlace place;
-  CorrectionKind kind = CorrectionKind::release;
   CutSetting setting;
 };
 
@@ -30,7 +29,8 @@ class CorrectionMemory {
 
   // Replaces what was known of the same place.
   void keep(const Remembered& worked) noexcept;
-  void forget(const CutPlace& place) noexcept;  // it did not help this time
+  // A speed (rad/s) that did not help this time; what else worked there stays.
+  void forget(const CutPlace& place, double speed) noexcept;
   // Nothing where no place is near; depths deeper than the remembered one are another question.
   [[nodiscard]] const Remembered* recall(const CutPlace& place) const noexcept;
 

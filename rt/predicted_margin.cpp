@@ -31,9 +31,8 @@ double least_margin(const Prediction& p, const LobeDiagram* diagram, double low,
   const double from = std::max(low, first_speed), to = std::min(high, last_speed);
   if (!(from <= to && last_speed > first_speed)) return kNaN;
   const double at_ends = worse(margin_of(p, diagram, from), margin_of(p, diagram, to));
-  const double places = static_cast<double>(last) / (last_speed - first_speed);
-  const auto first_inside = static_cast<std::size_t>(std::ceil((from - first_speed) * places));
-  const auto last_inside = std::min(static_cast<std::size_t>((to - first_speed) * places), last);
+  const auto first_inside = static_cast<std::size_t>(std::ceil(place_among_points(*diagram, from)));
+  const auto last_inside = static_cast<std::size_t>(place_among_points(*diagram, to));
   double least = kInfinity;
   for (std::size_t i = first_inside; i <= last_inside; ++i) {
     const double limit = diagram->points[i].depth_limit;
@@ -44,14 +43,10 @@ double least_margin(const Prediction& p, const LobeDiagram* diagram, double low,
 
 // Chatter frequency predicted at a speed; NaN: none, or between two points that differ.
 double predicted_frequency(const LobeDiagram& diagram, double speed) noexcept {
-  if (!diagram.valid || diagram.point_count < 2) return kNaN;
-  const auto last = static_cast<std::size_t>(diagram.point_count) - 1;
-  const double first_speed = diagram.points[0].speed, last_speed = diagram.points[last].speed;
-  const double place = (speed - first_speed) / (last_speed - first_speed) * static_cast<double>(last);
-  if (!(place >= 0.0 && place <= static_cast<double>(last))) return kNaN;
-  const auto below = static_cast<std::size_t>(place);
-  const double a = diagram.points[below].chatter_frequency_hz;
-  const double b = diagram.points[std::min(below + 1, last)].chatter_frequency_hz;
+  const double place = place_among_points(diagram, speed);
+  if (std::isnan(place)) return kNaN;
+  const double a = diagram.points[static_cast<std::size_t>(std::floor(place))].chatter_frequency_hz;
+  const double b = diagram.points[static_cast<std::size_t>(std::ceil(place))].chatter_frequency_hz;
   return std::abs(a - b) <= kSameFrequency * a ? 0.5 * (a + b) : kNaN;
 }
 

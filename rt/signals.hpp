@@ -51,6 +51,7 @@ struct CorrectionAck {
   bool accepted = false;
   double spindle_speed_rpm = 0.0;
   double feed_override = 1.0;
+  ShortText reason{};  // why it was refused, in the controller's words
 };
 
 enum class RuntimeMode : std::int8_t { off = 0, shadow = 1, active = 2 };

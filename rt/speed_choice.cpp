@@ -10,8 +10,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kAlreadyThere = 0.005;  // a target this near is no move
-constexpr double kSameTarget = 0.01;     // of one already tried
-constexpr double kSamePocket = 0.025;    // the same, of a target that is in step with nothing
+constexpr double kSamePocket = 0.025;    // of one already tried, of a target that is in step with nothing
 constexpr double kBeside = 0.01;         // relative: the error of n_k, within which a safe speed is looked for
 constexpr double kBesideOfLobe = 0.2;    // the same in distances between two n_k
 constexpr int kBesideSteps = 6;          // to each side
@@ -81,7 +80,7 @@ class Search {
 
   // n_k itself where that is safe; else the nearest safe speed beside it, else the safest.
   void consider_lobe(double n_k, int lobe) noexcept {
-    if (was_tried(n_k, kSameTarget)) return;
+    if (was_tried(q_.tried, n_k)) return;
     if (consider({n_k, lobe}) == SpeedGrounds::agreed) return;
     const double reach = std::min(kBeside, kBesideOfLobe / lobe);
     for (int i = 1; i <= kBesideSteps; ++i)
@@ -99,7 +98,7 @@ class Search {
     const double target = candidate.target;
     if (!may_stay_at(limits_, target) || !keeps_feed_per_tooth(limits_, target, q_.programmed_speed)) return kNone;
     if (std::abs(target - q_.speed) < kAlreadyThere * q_.speed) return kNone;
-    if (was_tried(target, candidate.lobe == 0 ? kSamePocket : kSameTarget)) return kNone;
+    if (was_tried(q_.tried, target, candidate.lobe == 0 ? kSamePocket : kSameTarget)) return kNone;
     SpeedChoice c;
     c.target = target;
     c.lobe = candidate.lobe;
@@ -127,11 +126,6 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool was_tried(double speed, double tolerance) const noexcept {
-    return std::any_of(q_.tried.begin(), q_.tried.end(),
-                       [&](double t) { return std::abs(t - speed) < tolerance * speed; });
-  }
-
   // Do no harm: a setting predicted no better than the present one is none.
   [[nodiscard]] SpeedGrounds grounds_of(const SpeedChoice& c, bool beside) const noexcept {
     const bool predicted = !std::isnan(c.safe_margin);
@@ -174,6 +168,10 @@ void consider_lobes(const SpeedQuestion& q, const CompensationLimits& limits, Se
 }
 
 }  // namespace
+
+bool was_tried(std::span<const double> tried, double speed, double tolerance) noexcept {
+  return std::any_of(tried.begin(), tried.end(), [&](double t) { return std::abs(t - speed) < tolerance * speed; });
+}
 
 SpeedChoice choose_speed(const SpeedQuestion& q, const CompensationLimits& limits) noexcept {
   Search search{q, limits};

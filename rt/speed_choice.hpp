@@ -42,6 +42,10 @@ struct SpeedChoice {
   [[nodiscard]] bool found() const noexcept { return grounds != SpeedGrounds::none; }
 };
 
+inline constexpr double kSameTarget = 0.01;  // relative: nearer than this to one that was tried it is the same
+
+[[nodiscard]] bool was_tried(std::span<const double> tried, double speed, double tolerance = kSameTarget) noexcept;
+
 // The speed with the best grounds; among equal ones the one with which the vibration is soonest over: the time of the
 // move and that of the decay, which a wide margin makes short (the more so, the slower the vibration). Always inside
 // the limits, never predicted worse than the present speed, never one that was tried, nor within half a per cent of the

@@ -98,6 +98,7 @@ void VirtualController::act_on(const Heard& heard, double time, const RobotState
   ack.accepted = reason.empty();
   ack.spindle_speed_rpm = rad_s_to_rpm(mean_speed(program));
   ack.feed_override = feed_asked();
+  ack.reason = short_text(reason);
   said_.push_back({ack, reason});
 }
 

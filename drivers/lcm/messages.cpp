@@ -273,7 +273,11 @@ Received<CorrectionAck> decode_correction_ack(std::span<const std::uint8_t> byte
   correction_ack_t m{};
   if (!from_bytes(bytes, m)) return refused<CorrectionAck>(kWrongType);
   if (const char* why_not = reason_to_refuse(m)) return refused<CorrectionAck>(why_not);
-  return {CorrectionAck{stamp_ns, m.sequence, m.accepted == 1, m.spindle_speed_rpm, m.feed_override}};
+  // What cannot be printed has no place in a line of a log.
+  std::replace_if(
+      m.reason.begin(), m.reason.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return {
+      CorrectionAck{stamp_ns, m.sequence, m.accepted == 1, m.spindle_speed_rpm, m.feed_override, short_text(m.reason)}};
 }
 
 Received<Correction> decode_correction(std::span<const std::uint8_t> bytes) {

@@ -142,6 +142,60 @@ TEST(CorrectionFollower, MovesThePathAsideForAFeedDirectionAndBack) {
   EXPECT_EQ(cell.refused(cell.next(turn)), "the tool does not move, its feed direction is not known");
 }
 
+// As the simulated machine's controller does: a feed or a direction keeps the speed that it carries.
+TEST(CorrectionFollower, AFeedOrADirectionKeepsTheSpeedThatIsInForce) {
+  for (const CorrectionKind kind : {CorrectionKind::feed_override, CorrectionKind::feed_direction}) {
+    FollowerCell cell;
+    cell.hold(speed_correction(7380.0, 0.82), 250);
+    Correction next = speed_correction(7380.0, 0.6);
+    next.kind = kind;
+    next.feed_direction = 0.01;
+    EXPECT_EQ(cell.refused(cell.next(next)), "accepted");
+    const Setpoint setpoint = cell.hold(next, 250);
+    EXPECT_EQ(setpoint.spindle_speed_rpm, 7380.0);
+    EXPECT_DOUBLE_EQ(setpoint.feed_override, 0.6);
+    EXPECT_EQ(setpoint.path_offset > 0.0, kind == CorrectionKind::feed_direction);
+    next.spindle_speed_rpm = 5000.0;
+    EXPECT_EQ(cell.refused(cell.next(next)), "spindle_speed_rpm is not from 6000 to 12000");
+    EXPECT_EQ(cell.run(2000).spindle_change_rpm, 0.0);
+    next.spindle_speed_rpm = std::nan("");  // the programmed one
+    EXPECT_EQ(cell.hold(next, 250).spindle_change_rpm, 0.0);
+  }
+}
+
+TEST(CorrectionFollower, LessFeedMayBeginAtAFasterSpindleWhoseFeedIsHeld) {
+  FollowerCell cell;
+  cell.hold(speed_correction(11070.0, 1.23), 250);
+  Correction less = speed_correction(11070.0, 1.23);
+  less.kind = CorrectionKind::feed_override;
+  const auto answer = cell.say(cell.next(less));
+  ASSERT_TRUE(answer && answer->ack.accepted) << answer->reason.data();
+  EXPECT_STREQ(answer->reason.data(), "feed override 1.23 is held at 1.20");
+  less.feed_override = 0.7;
+  const Setpoint setpoint = cell.hold(less, 250);
+  EXPECT_DOUBLE_EQ(setpoint.feed_override, 0.7);
+  EXPECT_EQ(setpoint.spindle_speed_rpm, 11070.0);
+}
+
+// The direction of a controller that moves no spindle (EGM with --answer path) is followed at the program's speed.
+TEST(CorrectionFollower, ADirectionWithoutSpeedsSaysWhichSpeedItHolds) {
+  FollowerSettings settings = any_controller();
+  for (const std::size_t kind : {1U, 2U, 4U}) settings.refusals.at(kind) = "carries no speeds";
+  FollowerCell cell{settings};
+  Correction turn = speed_correction(9050.0, 0.5);
+  turn.kind = CorrectionKind::feed_direction;
+  turn.feed_direction = 0.02;
+  const auto answer = cell.say(cell.next(turn));
+  ASSERT_TRUE(answer && answer->ack.accepted);
+  EXPECT_STREQ(answer->reason.data(), "");
+  const Setpoint setpoint = cell.hold(turn, 50);
+  EXPECT_EQ(setpoint.spindle_change_rpm, 0.0);
+  EXPECT_EQ(setpoint.feed_override, 1.0);
+  EXPECT_GT(setpoint.path_offset, 0.0);
+  turn.spindle_speed_rpm = 7380.0;
+  EXPECT_STREQ(cell.say(cell.next(turn))->reason.data(), "spindle speed 7380 is held at the program's 9000");
+}
+
 TEST(CorrectionFollower, LetsGoWhileItIsHeldBackAndSaysWhy) {
   FollowerCell cell;
   cell.hold(speed_correction(7380.0, 0.82), 250);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "rt/compensator.hpp"
@@ -42,9 +43,9 @@ class Bench {
       acknowledge(true);
     }
   }
-  void acknowledge(bool accepted) {
+  void acknowledge(bool accepted, std::string_view reason = {}) {
     if (corrections.empty()) return;
-    compensator_.acknowledge({now_ns, corrections.back().sequence, accepted, 0.0, 1.0});
+    compensator_.acknowledge({now_ns, corrections.back().sequence, accepted, 0.0, 1.0, short_text(reason)});
   }
   [[nodiscard]] Compensator& compensator() { return compensator_; }
   [[nodiscard]] int releases() const {
@@ -70,5 +71,27 @@ class Bench {
   Compensator compensator_;
   OutputQueue queue_;
 };
+
+// What was asked for, one entry a start: kinds in order.
+inline std::vector<CorrectionKind> asked_for(const Bench& bench) {
+  std::vector<CorrectionKind> kinds;
+  double target = 0.0;
+  for (const Correction& c : bench.corrections) {
+    if (!kinds.empty() && kinds.back() == c.kind && target == c.spindle_speed_target_rpm) continue;
+    kinds.push_back(c.kind);
+    target = c.spindle_speed_target_rpm;
+  }
+  return kinds;
+}
+
+// A machine that follows every correction and chatters on whatever is done.
+inline void run_following(Bench& bench, double seconds, double frequency_hz = 738.0) {
+  double speed_rpm = 9000.0;
+  for (int i = 0; i < static_cast<int>(seconds / 0.002); ++i) {
+    bench.step(chattering(0, frequency_hz, speed_rpm));
+    bench.acknowledge(true);
+    if (!bench.corrections.empty()) speed_rpm = bench.corrections.back().spindle_speed_rpm;
+  }
+}
 
 }  // namespace stillcut

@@ -84,7 +84,7 @@ TEST_F(Ladder, ChatterOfTheStructureIsMetByDirectionThenByThePredictedSpeedAndNo
   std::erase(asked, spindle_speed);
   EXPECT_EQ(asked, (std::vector{feed_override, stop_request}));
 
-  attempts.clear();
+  attempts = {};
   attempts.refuse(feed_direction);
   EXPECT_EQ(next_candidate(cut, attempts, limits).lobe, 0);  // the tool's recipe does not apply
 }
@@ -134,7 +134,7 @@ TEST_F(Ladder, WithoutAKnownDepthWhatDidNotHelpIsNotTriedAgain) {
 
 TEST_F(Ladder, WhatTheControllerRefusedIsNotAskedForAgain) {
   for (unsigned refused = 0; refused < 32; ++refused) {
-    attempts.clear();
+    attempts = {};
     for (unsigned i = 0; i < 5; ++i)
       if ((refused >> i & 1U) != 0) attempts.refuse(kEveryAsk[i]);
     for (const CorrectionKind kind : all_asked()) EXPECT_FALSE(attempts.refused(kind)) << int(kind);
@@ -170,7 +170,6 @@ TEST_F(Ladder, AfterSixteenAttemptsOnlyTheStopIsLeft) {
 
 TEST_F(Ladder, WhatWorkedHereBeforeComesFirstUnlessItWasTriedOrIsPredictedWorse) {
   Remembered worked;
-  worked.kind = CorrectionKind::spindle_speed;
   worked.setting.speed = rpm_to_rad_s(10800);
   cut.remembered = &worked;
   const Candidate again = next_candidate(cut, attempts, limits);
@@ -208,6 +207,20 @@ TEST_F(Ladder, LessFeedKeepsToTheToolAndToTheOverride) {
   EXPECT_EQ(next_candidate(cut, attempts, limits).kind, CorrectionKind::stop_request);
 }
 
+// No controller keeps the feed turned for them.
+TEST_F(Ladder, LessFeedAndAStopTurnTheFeedBack) {
+  cut.present.feed_direction = 0.5;
+  using enum CorrectionKind;
+  for (const CorrectionKind kind : {spindle_speed, speed_variation, feed_direction}) attempts.refuse(kind);
+  const Candidate less = next_candidate(cut, attempts, limits);
+  EXPECT_EQ(less.kind, feed_override);
+  EXPECT_EQ(less.setting.feed_direction, cut.programmed.feed_direction);
+  attempts.refuse(feed_override);
+  const Candidate stop = next_candidate(cut, attempts, limits);
+  EXPECT_EQ(stop.kind, stop_request);
+  EXPECT_EQ(stop.setting.feed_direction, cut.programmed.feed_direction);
+}
+
 // Margin of a setting by the words of each choice's header, the swing's own mean apart (variation_choice_test.cpp).
 double predicted_of(const ChatterSituation& s, const Candidate& c) {
   if (c.kind == CorrectionKind::feed_direction)
@@ -235,7 +248,6 @@ TEST(RandomLadder, NothingIsPredictedWorseThanThePresentSettingAndAllStaysInside
     s.present.feed_factor = cases.chance(0.7) ? 1.0 : cases.between(0.3, 1.0);
     s.prediction = c.kept.view();
     Remembered worked;
-    worked.kind = kEveryAsk[cases.whole(0, 4)];
     worked.setting.speed = c.speed * cases.between(0.7, 1.4);
     if (cases.chance(0.3)) s.remembered = &worked;
     Attempts attempts;

@@ -1,6 +1,6 @@
 // Do no harm: whatever sensors, bus, robot, controller, lobes and clocks do, what is published stays inside its limits,
 // moves to nothing predicted worse, carries its expiry, and ends in a release when its conditions fail. Random cuts
-// through the whole core, with a controller that follows, answers, is deaf or refuses.
+// through the whole core, with a controller that follows, answers, is deaf, refuses, or takes some kinds only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -149,7 +149,7 @@ class Judge {
   bool in_force_ = false;
 };
 
-enum class Controller { answers, deaf, refuses, wrong_answers, sometimes };
+enum class Controller { answers, deaf, refuses, wrong_answers, sometimes, picks };
 
 struct Outcome {
   int asked = 0, releases = 0;
@@ -164,7 +164,7 @@ void run_one(std::uint64_t seed, Outcome& outcome) {
   CoreSettings settings = settings_of(cut, chance(random) < 0.75 ? RuntimeMode::active : RuntimeMode::shadow);
   settings.compensator.limits = limits_for(random);
   const bool active = settings.compensator.mode == RuntimeMode::active;
-  const auto controller = static_cast<Controller>(static_cast<int>(5 * chance(random)));
+  const auto controller = static_cast<Controller>(static_cast<int>(6 * chance(random)));
   Core core{settings};
   Judge judge{settings.compensator.limits};
   if (chance(random) < 0.7) core.add_lobes(random_lobes(random, 0));
@@ -172,6 +172,15 @@ void run_one(std::uint64_t seed, Outcome& outcome) {
   std::int64_t shift_ns = 0, robot_ns = 0, next_state_ns = kStart, answered_ns = 0, speaks_from_ns = 0;
   std::int64_t first_asked_ns = 0;
   std::size_t next_speed = 0;
+  const unsigned kinds_taken = controller == Controller::refuses ? 0U
+                               : controller == Controller::picks ? static_cast<unsigned>(random())
+                                                                 : ~0U;
+  const auto takes = [kinds_taken](CorrectionKind kind) {
+    return (kinds_taken >> static_cast<unsigned>(kind) & 1U) != 0;
+  };
+  const bool tells_motion = chance(random) < 0.5;
+  const double turns_at = 0.3 + chance(random);  // rad/s, by the controller
+  double feed_direction = 0.0;
   for (const SampleBlock& recorded : log.blocks) {
     SampleBlock block = recorded;
     if (faults && chance(random) < 0.001)  // the clock is set
@@ -191,6 +200,11 @@ void run_one(std::uint64_t seed, Outcome& outcome) {
         RobotState state = state_at(block.stamp_ns);
         state.spindle_speed_rpm = 9000.0;
         state.axial_depth = chance(random) < 0.05 ? kNaN : 1e-3;
+        const bool turned = judge.in_force() && active && judge.last().kind == CorrectionKind::feed_direction &&
+                            takes(CorrectionKind::feed_direction) && controller != Controller::deaf;
+        feed_direction += std::clamp((turned ? judge.last().feed_direction : 0.0) - feed_direction, -0.008 * turns_at,
+                                     0.008 * turns_at);
+        state.feed_direction = tells_motion ? feed_direction : 0.0;
         core.add_robot_state(state);
         robot_ns = block.stamp_ns;
       }
@@ -208,10 +222,12 @@ void run_one(std::uint64_t seed, Outcome& outcome) {
     core.clear_outputs();
     if (judge.in_force()) {
       const bool says = controller == Controller::answers || controller == Controller::refuses ||
+                        controller == Controller::picks ||
                         (controller == Controller::sometimes && chance(random) < 0.02);
       if (says) {
-        core.add_ack({block.stamp_ns, judge.last().sequence, controller != Controller::refuses, 9000.0, 1.0});
-        if (controller != Controller::refuses) answered_ns = std::max(answered_ns, block.stamp_ns);
+        const bool taken = takes(judge.last().kind);
+        core.add_ack({block.stamp_ns, judge.last().sequence, taken, 9000.0, 1.0, short_text("cannot")});
+        if (taken) answered_ns = std::max(answered_ns, block.stamp_ns);
       }
       if (controller == Controller::wrong_answers) {
         core.add_ack(

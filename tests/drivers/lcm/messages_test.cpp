@@ -162,6 +162,15 @@ TEST(Messages, RefuseAcknowledgementsOutOfRange) {
   EXPECT_FALSE(decode_correction_ack(bytes, 0).ok());
 }
 
+TEST(Messages, TellWhyTheControllerRefusesInWhatCanBePrinted) {
+  const auto told = [](std::string_view reason) {
+    return std::string{decode_correction_ack(encode(CorrectionAck{}, reason), 0).value.reason.data()};
+  };
+  EXPECT_EQ(told("EGM path correction carries no speeds"), "EGM path correction carries no speeds");
+  EXPECT_EQ(told("two\nlines, \x1b[31m"), "two?lines, ?[31m");
+  EXPECT_EQ(told(std::string(500, 'x')), std::string(ShortText{}.size() - 1, 'x'));
+}
+
 TEST(Messages, RefuseEnumerationsOutOfRange) {
   constexpr std::size_t kAfterTime = 8 + 8;
   MessageBytes event = encode(Event{});
