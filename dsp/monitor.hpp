@@ -57,6 +57,10 @@ class Monitor {
  public:
   explicit Monitor(const MonitorSettings& settings);
 
+  void set_probe(const StageProbe& probe) noexcept {
+    for (Sensor& sensor : sensors_) sensor.path.set_probe(probe);
+  }
+
   // Time zero of notes such as "start=3.612" (the first frame's stamp).
   void set_origin(std::int64_t stamp_ns) noexcept { origin_ns_ = stamp_ns; }
 

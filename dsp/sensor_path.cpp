@@ -93,6 +93,7 @@ void SensorPath::follow_mean(std::span<const Lanes> x, std::span<Lanes> alternat
 
 // A stage at a time over all samples of the block that belong to one hop.
 int SensorPath::process(const SampleBlock& block, int from, double speed) noexcept {
+  probe_(Stage::filter);
   const bool turning = speed > kSlowestTurning;
   const double revolution_s = turning ? 2.0 * std::numbers::pi / speed : 0.0;
   if (turning && filter_.set_samples_per_revolution(rate_ * revolution_s)) table_changed_ = true;
@@ -118,7 +119,9 @@ int SensorPath::process(const SampleBlock& block, int from, double speed) noexce
   Lanes power;
   for (std::size_t i = 0; i < n; ++i) power += residual[i] * residual[i];
   hop_residual_ += sum(power);
+  probe_(Stage::transform);
   hop_complete_ = watch_.push(residual);
+  probe_(Stage::decide);
   if (hop_complete_) update_level(revolution_s);
   return to;
 }

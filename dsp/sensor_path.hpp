@@ -12,6 +12,7 @@
 #include "dsp/line_watch.hpp"
 #include "dsp/signals.hpp"
 #include "dsp/slow_watch.hpp"
+#include "dsp/stage_probe.hpp"
 #include "dsp/synchronous_filter.hpp"
 
 namespace stillcut {
@@ -24,6 +25,8 @@ struct SensorSettings {
 class SensorPath {
  public:
   SensorPath(const SensorSettings& sensor, const LineWatchSettings& watch);
+
+  void set_probe(const StageProbe& probe) noexcept { probe_ = probe; }
 
   // Missing samples before the block that follows: the angle turns on, the window is bridged or cleared.
   void skip(std::int64_t samples, double speed) noexcept;
@@ -77,6 +80,7 @@ class SensorPath {
   void update_changes(double revolution_s) noexcept;
   void raise(std::uint32_t doubts) noexcept;
 
+  StageProbe probe_;
   double rate_;
   std::uint8_t axes_present_;
   int axes_;

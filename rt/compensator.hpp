@@ -37,6 +37,7 @@ struct CompensatorInputs {
   double feed_direction = 0.0;               // rad, as it is
   double nominal_speed = 0.0;                // rad/s, as programmed; 0: take the measured speed
   bool controller_alive = false;             // robot_state arrives
+  bool in_time = true;                       // the loop keeps time
 };
 
 class Compensator {

@@ -51,6 +51,7 @@ void Compensator::acknowledge(const CorrectionAck& ack) noexcept {
 const char* Compensator::reason_to_hold_back(const CompensatorInputs& in) noexcept {
   if (in.monitor->doubts != kNoDoubt && phase_ != Phase::stopped && !deafened(in)) return "the monitor cannot tell";
   if (settings_.mode != RuntimeMode::active) return nullptr;
+  if (!in.in_time && phase_ != Phase::stopped) return "the loop cannot keep time";
   if (!in.controller_alive) return "controller silent";
   if (correcting() && in.now_ns - answered_ns_ > kAnswerWithin_ns) unanswered_ = true;
   // Quiet for a while: a new question.

@@ -97,6 +97,18 @@ void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
       Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed), short_text(what)});
 }
 
+void Core::add_timing(const LoopTiming& timing) noexcept {
+  advance(timing.stamp_ns);
+  in_time_ = timing.in_time;
+  if (in_time_) return;
+  char note[96];
+  std::snprintf(note, sizeof note, "the loop cannot keep time: stood still for %.1f ms; see 'stillcut doctor'",
+                static_cast<double>(timing.longest_gap_ns) * 1e-6);
+  outputs_.put(
+      Event{now_ns_, EventType::fault, ChatterKind::unknown, kNaN, kNaN, rad_s_to_rpm(view().speed), short_text(note)});
+  decide(now_ns_);
+}
+
 void Core::add_robot_state(const RobotState& state) noexcept {
   const double step_s = static_cast<double>(state.stamp_ns - robot_.stamp_ns) * 1e-9;
   if (robot_heard_ && step_s > 0.0 && step_s < kDepthForgets_s) {
@@ -186,6 +198,7 @@ void Core::decide(std::int64_t stamp_ns) noexcept {
   in.coming_depth = coming_depth();
   in.feed_direction = robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
   in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
+  in.in_time = in_time_;
   in.controller_alive = robot_heard_ && now_ns - robot_.stamp_ns < kControllerSilent_ns;
   compensator_.step(in, outputs_);
 }

@@ -37,12 +37,16 @@ class Core {
  public:
   explicit Core(const CoreSettings& settings);
 
+  // Told of filter, transform and decide; before the first frame.
+  void set_probe(const StageProbe& probe) noexcept { monitor_.set_probe(probe); }
+
   // A frame's stamp comes first. False: it went back in time; the frame is to be dropped (a fault event says so).
   bool accept_frame(std::int64_t stamp_ns) noexcept;
   void add_samples(const SampleBlock& block) noexcept;
   void add_speed(const SpindleReading& reading) noexcept;
   void add_robot_state(const RobotState& state) noexcept;
   void add_ack(const CorrectionAck& ack) noexcept { compensator_.acknowledge(ack); }
+  void add_timing(const LoopTiming& timing) noexcept;
   // The controller's own report of trouble on the bus: an error frame's identifier and second data byte
   // (linux/can/error.h).
   void add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept;
@@ -93,6 +97,7 @@ class Core {
   bool started_ = false;     // by the first frame
   bool robot_heard_ = false;
   bool out_of_order_told_ = false;
+  bool in_time_ = true;
   std::uint32_t bus_errors_told_ = 0;  // kinds of bus trouble told since the bus was last well
   std::int64_t origin_ns_ = 0, now_ns_ = 0, decided_ns_ = 0, next_status_ns_ = 0;
 };

@@ -45,6 +45,13 @@ struct RobotPath {
   std::array<PathPoint, kMaxPoints> points{};  // in time
 };
 
+// The loop falls out of time, or keeps it again (rt/timekeeper.hpp).
+struct LoopTiming {
+  std::int64_t stamp_ns = 0;
+  bool in_time = true;
+  std::int64_t longest_gap_ns = 0;  // between ticks
+};
+
 struct CorrectionAck {
   std::int64_t stamp_ns = 0;
   std::int64_t sequence = 0;

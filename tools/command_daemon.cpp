@@ -18,6 +18,8 @@ int run_stillcutd(int argc, char** argv) {
       ->check(CLI::Range(1, 99));
   app.add_option("--cpu", options.cpu, "processor of the loop (default: any)");
   app.add_flag("--json", options.json, "at the end print one JSON object");
+  app.add_flag("--allow-not-real-time", options.allow_not_real_time,
+               "on the bench: run active mode though this host cannot keep time, and release nothing when it does not");
   app.add_flag("--audit", options.audit,
                "abort (status 134) at the loop's first system call but receive, sleep and clock");
   app.footer("Example:\n  stillcutd /etc/stillcut/cell.toml --record cut.log --events events.csv");

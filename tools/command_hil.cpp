@@ -125,6 +125,7 @@ HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std
                                  {.on_correction = [&](const Correction& c) { inbox.add(Output{c}); }, .on_event = {}},
                                  MonitorListener::Thread::none};
   LiveRunOptions options;
+  options.allow_not_real_time = true;              // the machine is a simulated one
   options.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
     if (output.type != Output::Type::correction) inbox.add(output);
   };

@@ -50,6 +50,7 @@ void run_daemon(const DaemonOptions& options) {
                .priority = options.priority,
                .cpu = options.cpu,
                .audit = options.audit,
+               .allow_not_real_time = options.allow_not_real_time,
                .on_output = {}}};
   wait_for_the_end(signals, run, options.duration_s);
   run.stop();

@@ -7,13 +7,14 @@ namespace stillcut {
 
 struct DaemonOptions {
   std::string cell;
-  std::string record;     // file for a plain candump log of what went into the core; empty: none
-  std::string events;     // file for the events as CSV; empty: none
-  double duration_s = 0;  // end after this long; 0: on SIGTERM or SIGINT
-  int priority = 80;      // SCHED_FIFO
-  int cpu = -1;           // processor of the loop; -1: any
-  bool json = false;      // the summary as one JSON object on standard output
-  bool audit = false;     // end with status 134 at the loop's first forbidden system call
+  std::string record;                // file for a plain candump log of what went into the core; empty: none
+  std::string events;                // file for the events as CSV; empty: none
+  double duration_s = 0;             // end after this long; 0: on SIGTERM or SIGINT
+  int priority = 80;                 // SCHED_FIFO
+  int cpu = -1;                      // processor of the loop; -1: any
+  bool json = false;                 // the summary as one JSON object on standard output
+  bool allow_not_real_time = false;  // active on a host that cannot keep time: for the bench
+  bool audit = false;                // end with status 134 at the loop's first forbidden system call
 };
 
 // Runs to its end. Throws InputError and ComponentError before it starts; after that inputs cannot end it.

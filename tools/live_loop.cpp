@@ -21,29 +21,51 @@ std::int64_t realtime_ns() noexcept {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-bool LiveLoop::tick() noexcept {
+bool LiveLoop::tick(std::int64_t awake_ns) noexcept {
+  StageTimes& stages = channels_.times.stages;
+  stages.begin_tick();
   const std::int64_t before_ns = realtime_ns();
   if (channels_.lobes.update()) pipeline_.core().add_lobes(channels_.lobes.value());
   if (channels_.ahead.update()) pipeline_.core().add_lobes(channels_.ahead.value());
-  bool drained = false;
-  for (int batch = 0; batch < kBatchesATick && !drained; ++batch) {
-    const std::size_t count = bus_.receive(batch_);
-    drained = count < batch_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      place_in_time(batch_[i]);
-      feed_messages_until(batch_[i].stamp_ns);
-      pipeline_.feed(batch_[i]);
-      if (record_) (void)channels_.recorded.push(batch_[i]);  // a full ring is counted by the ring
-      hand_over();
-    }
-  }
-  if (live_clock_ && drained) {
+  drain_bus();
+  if (live_clock_ && drained_) {
     declared_ns_ = std::max(declared_ns_, (before_ns + clock_shift_ns_ - kBehindClock_ns) / 1000 * 1000);
     feed_messages_until(declared_ns_);
     pipeline_.core().advance(declared_ns_);
     hand_over();
   }
+  if (live_clock_) keep_time(awake_ns);
+  stages.end_tick();
   return bus_.state() != BusState::ended;
+}
+
+void LiveLoop::drain_bus() noexcept {
+  StageTimes& stages = channels_.times.stages;
+  drained_ = false;
+  for (int batch = 0; batch < kBatchesATick && !drained_; ++batch) {
+    stages.begin(Stage::receive);
+    const std::size_t count = bus_.receive(batch_);
+    drained_ = count < batch_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int64_t received_ns = batch_[i].stamp_ns;
+      place_in_time(batch_[i]);
+      feed_messages_until(batch_[i].stamp_ns);
+      pipeline_.feed(batch_[i]);
+      if (record_) (void)channels_.recorded.push(batch_[i]);  // a full ring is counted by the ring
+      if (hand_over() && live_clock_) channels_.times.decision.record(realtime_ns() - received_ns);
+    }
+  }
+}
+
+// A loop that is out of time only listens. Its word comes into data time behind all that has been fed.
+void LiveLoop::keep_time(std::int64_t awake_ns) noexcept {
+  if (!timekeeper_.tick(awake_ns)) return;
+  LoopTimes& times = channels_.times;
+  times.in_time.store(timekeeper_.in_time(), std::memory_order_relaxed);
+  if (!timekeeper_.in_time()) times.times_out.store(times.times_out.load(std::memory_order_relaxed) + 1);
+  if (!must_keep_time_) return;
+  pipeline_.core().add_timing({declared_ns_, timekeeper_.in_time(), timekeeper_.longest_gap_ns()});
+  hand_over();
 }
 
 // A frame from a time that was already declared silent (the machine stood still between stamp and socket) counts as of
@@ -73,13 +95,15 @@ void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {
   }
 }
 
-void LiveLoop::hand_over() noexcept {
+bool LiveLoop::hand_over() noexcept {
   Core& core = pipeline_.core();
-  if (core.outputs().empty()) return;
+  if (core.outputs().empty()) return false;
+  channels_.times.stages.begin(Stage::hand_over);
   // Relaxed: the ring's release below orders it before the first output.
   channels_.origin_ns.store(core.origin_ns(), std::memory_order_relaxed);
   for (const Output& output : core.outputs()) (void)channels_.outputs.push(output);
   core.clear_outputs();
+  return true;
 }
 
 }  // namespace stillcut

@@ -14,8 +14,10 @@
 #include "drivers/can/can_bus.hpp"
 #include "drivers/lcm/lcm_log.hpp"
 #include "models/lobe_diagram.hpp"
+#include "rt/loop_times.hpp"
 #include "rt/ring.hpp"
 #include "rt/snapshot.hpp"
+#include "rt/timekeeper.hpp"
 #include "tools/pipeline.hpp"
 
 namespace stillcut {
@@ -28,28 +30,42 @@ struct LoopChannels {
   Ring<Output> outputs{4096};
   Ring<CanFrame> recorded{32768};          // ten seconds of a triaxial 25.6 kHz sensor
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
+  LoopTimes times;
 };
 
 class LiveLoop {
  public:
   // live_clock: the bus stamps with this host's CLOCK_REALTIME, so silence can be told from it; false for a log.
-  // record: hand every frame to the recorder's ring. All references must outlive the loop.
-  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record) noexcept
-      : bus_{bus}, pipeline_{pipeline}, channels_{channels}, live_clock_{live_clock}, record_{record} {}
+  // record: hand every frame to the recorder's ring. must_keep_time: out of time, what was asked for is released.
+  // All references must outlive the loop.
+  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record,
+           bool must_keep_time) noexcept
+      : bus_{bus},
+        pipeline_{pipeline},
+        channels_{channels},
+        live_clock_{live_clock},
+        record_{record},
+        must_keep_time_{must_keep_time} {
+    pipeline_.set_probe(channels_.times.stages.probe());
+  }
 
-  // One tick on the real-time thread; false when the bus has come to its end (a log). No allocation, no lock, no system
-  // call but receive and clock.
-  bool tick() noexcept;
+  // One tick on the real-time thread, awake at a time of CLOCK_MONOTONIC; false when the bus has come to its end (a
+  // log). No allocation, no lock, no system call but receive and clock.
+  bool tick(std::int64_t awake_ns) noexcept;
 
  private:
+  void keep_time(std::int64_t awake_ns) noexcept;
+  void drain_bus() noexcept;
   void place_in_time(CanFrame& frame) noexcept;
   void feed_messages_until(std::int64_t stamp_ns) noexcept;
-  void hand_over() noexcept;
+  bool hand_over() noexcept;  // true: there was something
 
   CanBus& bus_;
   Pipeline& pipeline_;
   LoopChannels& channels_;
-  bool live_clock_, record_;
+  bool live_clock_, record_, must_keep_time_;
+  bool drained_ = false;  // the bus, in this tick
+  Timekeeper timekeeper_{kLoopPeriodNs};
   std::array<CanFrame, 64> batch_{};
   RobotMessage waiting_{};
   bool has_waiting_ = false;

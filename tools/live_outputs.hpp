@@ -39,6 +39,10 @@ class PublisherThread {
     thread_ = std::jthread{[this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
         drain();
+        if (const std::int64_t now_ns = realtime_ns(); now_ns - times_told_ns_ >= kTellTimesEvery_ns) {
+          times_told_ns_ = now_ns;
+          publisher_.publish(channels_.times, now_ns);
+        }
         std::this_thread::sleep_for(kPoll);
       }
     }};
@@ -66,6 +70,7 @@ class PublisherThread {
 
  private:
   static constexpr std::chrono::milliseconds kPoll{2};
+  static constexpr std::int64_t kTellTimesEvery_ns = 1'000'000'000;
 
   void drain() {
     Output output;
@@ -93,6 +98,7 @@ class PublisherThread {
   std::ofstream events_;
   EventTally tally_;
   Correction last_{};
+  std::int64_t times_told_ns_ = 0;
   std::jthread thread_;
 };
 

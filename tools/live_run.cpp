@@ -14,6 +14,7 @@
 #include "tools/live_loop.hpp"
 #include "tools/live_outputs.hpp"
 #include "tools/predictor.hpp"
+#include "tools/real_time_check.hpp"
 
 namespace stillcut {
 namespace {
@@ -31,34 +32,46 @@ std::string interface_name(const std::string& bus) {
   return "can0";
 }
 
+double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+
 nlohmann::ordered_json summary_json(const Pipeline& pipeline, const CanBus& bus, const LoopChannels& channels,
-                                    const LoopStatistics& loop, const PublisherThread& publisher) {
+                                    const PublisherThread& publisher) {
   const BusCounters can = bus.counters();
+  const LoopStatistics& loop = channels.times.loop;
   const LatencySummary wake = loop.wakeup.summary(), tick = loop.execution.summary();
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  return {{"frames", pipeline.core().counters().frames},
-          {"frames_lost", pipeline.core().counters().frames_lost},
-          {"frames_bad", can.frames_bad + pipeline.decoder().counters().frames_bad},
-          {"frames_out_of_order", pipeline.core().counters().frames_out_of_order},
-          {"kernel_dropped", can.dropped},
-          {"error_frames", can.error_frames},
-          {"bus_off", can.bus_off},
-          {"reopened", can.reopened},
-          {"chatter_onsets", publisher.tally().chatter_onsets},
-          {"corrections", publisher.tally().corrections},
-          {"faults", publisher.tally().faults},
-          {"published", publisher.publisher().sent()},
-          {"publish_failed", publisher.publisher().failed()},
-          {"outputs_dropped", channels.outputs.refused()},
-          {"record_dropped", channels.recorded.refused()},
-          {"ticks", loop.ticks.load()},
-          {"overruns", loop.overruns.load()},
-          {"wakeup_p50_us", us(wake.p50_ns)},
-          {"wakeup_p99_us", us(wake.p99_ns)},
-          {"wakeup_max_us", us(wake.max_ns)},
-          {"tick_p50_us", us(tick.p50_ns)},
-          {"tick_p9999_us", us(tick.p9999_ns)},
-          {"tick_max_us", us(tick.max_ns)}};
+  nlohmann::ordered_json json{{"frames", pipeline.core().counters().frames},
+                              {"frames_lost", pipeline.core().counters().frames_lost},
+                              {"frames_bad", can.frames_bad + pipeline.decoder().counters().frames_bad},
+                              {"frames_out_of_order", pipeline.core().counters().frames_out_of_order},
+                              {"kernel_dropped", can.dropped},
+                              {"error_frames", can.error_frames},
+                              {"bus_off", can.bus_off},
+                              {"reopened", can.reopened},
+                              {"chatter_onsets", publisher.tally().chatter_onsets},
+                              {"corrections", publisher.tally().corrections},
+                              {"faults", publisher.tally().faults},
+                              {"published", publisher.publisher().sent()},
+                              {"publish_failed", publisher.publisher().failed()},
+                              {"outputs_dropped", channels.outputs.refused()},
+                              {"record_dropped", channels.recorded.refused()},
+                              {"ticks", loop.ticks.load()},
+                              {"overruns", loop.overruns.load()},
+                              {"skipped", loop.skipped.load()},
+                              {"times_out", channels.times.times_out.load()},
+                              {"wakeup_p50_us", us(wake.p50_ns)},
+                              {"wakeup_p99_us", us(wake.p99_ns)},
+                              {"wakeup_max_us", us(wake.max_ns)},
+                              {"tick_p50_us", us(tick.p50_ns)},
+                              {"tick_p9999_us", us(tick.p9999_ns)},
+                              {"tick_max_us", us(tick.max_ns)}};
+  for (const NamedLatency& stage : named_latencies(channels.times)) {
+    json["latency_us"][stage.name] = {{"count", stage.times.count},
+                                      {"p50", us(stage.times.p50_ns)},
+                                      {"p99", us(stage.times.p99_ns)},
+                                      {"p99.9", us(stage.times.p999_ns)},
+                                      {"max", us(stage.times.max_ns)}};
+  }
+  return json;
 }
 
 const char* mode_name(RuntimeMode mode) {
@@ -87,7 +100,6 @@ struct LiveRun::Parts {
   std::optional<Subscriber> subscriber;
   std::optional<LoopSyscallFilter> audit;
   std::atomic<bool> stop_loop{false}, loop_ended{false};
-  LoopStatistics statistics;
   std::optional<LiveLoop> live;
   std::optional<RealTimeThread> loop;
   bool stopped = false;
@@ -113,11 +125,15 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   subscriber.emplace(lcm, realtime_ns, handlers);
 
   if (options.audit) audit.emplace();
-  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder.has_value());
+  const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
+  if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
+  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder.has_value(),
+               !options.allow_not_real_time);
   publisher.start();
-  loop.emplace(RealTimeSettings{.priority = options.priority, .cpu = options.cpu}, [this] {
+  loop.emplace(real_time, [this] {
     if (audit && audit->install() != 0) std::abort();
-    run_periodic(kLoopPeriodNs, stop_loop, statistics, [this](std::int64_t) noexcept { return live->tick(); });
+    run_periodic(kLoopPeriodNs, stop_loop, channels->times.loop,
+                 [this](std::int64_t awake_ns) noexcept { return live->tick(awake_ns); });
     if (audit) audit->release();
     loop_ended.store(true, std::memory_order_release);
   });
@@ -156,12 +172,11 @@ bool LiveRun::ended() const { return parts_->loop_ended.load(std::memory_order_a
 void LiveRun::stop() { parts_->stop(); }
 
 nlohmann::ordered_json LiveRun::summary() const {
-  return summary_json(parts_->pipeline, *parts_->bus, *parts_->channels, parts_->statistics, parts_->publisher);
+  return summary_json(parts_->pipeline, *parts_->bus, *parts_->channels, parts_->publisher);
 }
 
 TickTimes LiveRun::tick_times() const {
-  const LatencySummary tick = parts_->statistics.execution.summary();
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  const LatencySummary tick = parts_->channels->times.loop.execution.summary();
   return {us(tick.p50_ns), us(tick.p9999_ns), us(tick.max_ns)};
 }
 

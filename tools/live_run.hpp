@@ -20,6 +20,8 @@ struct LiveRunOptions {
   int priority = 80;   // SCHED_FIFO
   int cpu = -1;        // processor of the loop; -1: any
   bool audit = false;  // end with status 134 at the loop's first forbidden system call
+  // Active on a host that cannot keep time, and no release when the loop falls out of time: for the bench.
+  bool allow_not_real_time = false;
   std::function<void(const Output&)>
       on_output;  // told of all that is published, on the publisher's thread; may be empty
 };

@@ -63,12 +63,15 @@ Pipeline::Pipeline(const Cell& cell)
       core_{core_settings(cell)} {}
 
 bool Pipeline::feed(const CanFrame& frame) noexcept {
+  probe_(Stage::decide);  // what fell due before this frame
   if (!core_.accept_frame(frame.stamp_ns)) return false;
+  probe_(Stage::decode);
   if (frame.is_error()) {
     core_.add_bus_error(frame.id, frame.data[1]);
     return false;
   }
   if (!decoder_.decode(frame, decoded_)) return false;
+  probe_(Stage::decide);
   if (decoded_.has_speed) core_.add_speed(decoded_.spindle);
   for (int b = 0; b < decoded_.blocks; ++b) core_.add_samples(decoded_.block[b]);
   return decoded_.has_speed || decoded_.blocks > 0;

@@ -22,6 +22,12 @@ class Pipeline {
   // Reads the cell's DBC. Throws InputError.
   explicit Pipeline(const Cell& cell);
 
+  // Told of the stages from decode to decide; before the first frame.
+  void set_probe(const StageProbe& probe) noexcept {
+    probe_ = probe;
+    core_.set_probe(probe);
+  }
+
   // One frame of the bus, in the order of arrival. Real-time: no allocation, no lock, no system call. True when the
   // frame brought samples or speed (see decoded()).
   bool feed(const CanFrame& frame) noexcept;
@@ -32,6 +38,7 @@ class Pipeline {
   [[nodiscard]] const Decoded& decoded() const noexcept { return decoded_; }  // of the newest frame
 
  private:
+  StageProbe probe_;
   Decoder decoder_;
   Decoded decoded_;
   Core core_;

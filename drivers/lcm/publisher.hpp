@@ -19,6 +19,7 @@ class Publisher {
   bool publish(const Output& output);
   bool publish(const RobotState& state);  // the plant speaks for the robot
   bool publish(const RobotPath& path);
+  bool publish(const LoopTimes& times, std::int64_t stamp_ns);
   bool publish(const CorrectionAck& ack, std::string_view reason = {});
 
   // Any thread.
