@@ -28,8 +28,9 @@ DoctorWishes doctor_wishes(const DoctorOptions& options) {
   const std::string socketcan = "socketcan:";
   if (!wishes.can_interface && cell.can && !cell.can->bus.empty())
     wishes.can_interface = cell.can->bus.starts_with(socketcan) ? cell.can->bus.substr(socketcan.size()) : "";
-  if (wishes.recordings.empty()) wishes.recordings = std::filesystem::absolute(options.cell).parent_path();
-  wishes.recordings = std::filesystem::absolute(wishes.recordings);
+  if (wishes.recordings.empty()) wishes.recordings = std::filesystem::path(options.cell).parent_path();
+  if (wishes.recordings.empty()) wishes.recordings = ".";
+  wishes.recordings = std::filesystem::absolute(wishes.recordings).lexically_normal();
   return wishes;
 }
 

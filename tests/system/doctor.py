@@ -10,7 +10,7 @@ look() { ./stillcut doctor --json --can ${2:-vcan0} > $1.json 2> $1.err; echo $?
 mend() {  # mend NAME CHECK...: what doctor printed for these checks, word for word
   python3 -c 'import json, sys
 for check in json.load(open(sys.argv[1]))["checks"]:
-    if check["name"] in sys.argv[2:] and check["mend"]: print(check["mend"])' $1.json "${@:2}" > $1.sh
+    if check["name"] in sys.argv[2:] and check["mend"]: print(check["mend"])' $1.json "${@:2}" > $1.sh || fail "$(cat $1.err)"
   cat $1.sh; sh $1.sh || fail "the commands of $1 end with $?"
 }
 look as_it_should_be
@@ -81,7 +81,7 @@ def controller(folder):
         "bus_off_mended": (None, "error-active"),
     }
     for name, (what, found) in expected.items():
-        checks = {c.split(" ", 1)[1]: v for c, v in checks_of(folder, name).items() if c.startswith("slcan0 ")}
+        checks = {c.split(" ", 1)[1]: v for c, v in checks_of(folder, name).items() if c.startswith("can0 ")}
         told = {c: checks[c]["found"] for c in checks}
         print("  ", name, told)
         require(checks["bit rate"]["found"] == "500000 bit/s" and checks["bit rate"]["ok"], f"{name}: {told}")
