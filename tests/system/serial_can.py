@@ -2,7 +2,7 @@
 """A serial CAN adapter that is not there, for the guest: walks a real controller's states while stillcut doctor looks.
 
 The kernel's slcan driver sits on one end of a pseudo terminal, this script plays the adapter's firmware on the other:
-"sa010020" means error-active with the receive counter at 10 and the transmit counter at 20. Classic CAN only.
+"sw100100" means error-warning with both error counters at 100. Classic CAN only.
 """
 import fcntl
 import json
@@ -40,7 +40,7 @@ def look(state):
 
 subprocess.run(["ip", "link", "set", name, "type", "can", "bitrate", "500000"], check=True)
 subprocess.run(["ip", "link", "set", name, "up"], check=True)
-for said, state in (("sa000000", "active"), ("sa010020", "counting"), ("sw100100", "warning"), ("sp130130", "passive"),
+for said, state in (("sa000000", "active"), ("sw100100", "warning"), ("sp130130", "passive"),
                     ("sb256256", "bus_off")):
     os.write(adapter, said.encode() + b"\r")
     time.sleep(0.15)
