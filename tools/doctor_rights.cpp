@@ -66,9 +66,10 @@ std::vector<std::string> unit_lines(const Host& host, const std::string& unit) {
   add(std::string(*folder) + "/" + unit);
   std::map<std::string, std::string> drop_ins;  // by name, those of an earlier folder first
   for (const char* where : kUnitFolders) {
-    const std::string more = std::string(where) + "/" + unit + ".d";
+    std::string more = where;
+    more.append("/").append(unit).append(".d");
     for (const std::string& name : host.list(more)) {
-      if (name.ends_with(".conf")) drop_ins.emplace(name, more + "/" + name);
+      if (name.ends_with(".conf")) drop_ins.emplace(name, std::string(more).append("/").append(name));
     }
   }
   for (const auto& [name, file] : drop_ins) add(file);

@@ -157,10 +157,10 @@ TEST(Doctor, EveryCheckHasAFault) {
 TEST(Doctor, NoContentsOfAFileBreakIt) {
   constexpr char kNoise[] = "\xff\0\x01 9223372036854775807 -1 [ ,-, 0-99999999 \t:=\n\n= \xc3\n";
   const std::string noise{kNoise, sizeof kNoise - 1};
+  HealthyHost host;
   for (const auto& [file, text] : HealthyHost::files()) {
     for (const std::string& contents :
-         {std::string{"gone"}, std::string{"folder"}, std::string{}, noise, noise + text, std::string(3 << 20, '7')}) {
-      HealthyHost host;
+         {std::string{"gone"}, std::string{"folder"}, std::string{}, noise, noise + text, std::string(1 << 21, '7')}) {
       host.wishes.user = contents.size() % 2 == 0 ? "milling" : "";
       host.remove(file);
       if (contents == "folder") std::filesystem::create_directories(host.path() / file);
@@ -170,7 +170,11 @@ TEST(Doctor, NoContentsOfAFileBreakIt) {
         EXPECT_EQ(check.found.find('\n'), std::string::npos) << file << ": " << check.name;
       }
     }
+    host.remove(file);
+    host.put(file, text);
   }
+  host.wishes.user = "";
+  EXPECT_THAT(bad_names(host.examined()), IsEmpty()) << "the host was not restored";
 }
 
 // Fails if what cannot be read, though it is needed, counts as fine.
