@@ -28,6 +28,8 @@ int run_command_line(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
     return 0;
+  } catch (const CLI::RuntimeError& error) {  // a command's own verdict, which it has told
+    return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::cerr << app.get_name() << ": " << error.what() << "; see '" << app.get_name() << " --help'\n";
@@ -45,6 +47,7 @@ int run_stillcut(int argc, char** argv) {
   CLI::App app{"Stillcut: chatter monitor and compensator for robots that mill", "stillcut"};
   app.require_subcommand(1);
   app.set_version_flag("--version", STILLCUT_VERSION);
+  add_doctor_command(app);
   add_hil_command(app);
   add_lobes_command(app);
   add_map_command(app);
