@@ -27,10 +27,11 @@ class Timekeeper {
       const std::int64_t gap_ns = awake_ns - last_ns_;
       const double seconds = static_cast<double>(gap_ns) * 1e-9;
       const double missed = static_cast<double>(std::max<std::int64_t>(0, gap_ns / period_ns_ - 1));
-      // Missed ticks of about the last second: a running sum that forgets.
-      missed_ = std::max(0.0, missed_ * (1.0 - std::min(1.0, seconds))) + missed;
-      if (gap_ns > 5 * period_ns_) quiet_since_ns_ = awake_ns;
       const double allowed = limits_.missed_share * 1e9 / static_cast<double>(period_ns_);
+      // Missed ticks of about the last second: a running sum that forgets, and of which one long gap is no more than
+      // twice what is allowed.
+      missed_ = std::min(2.0 * allowed, missed_ * (1.0 - std::min(1.0, seconds)) + missed);
+      if (gap_ns > 5 * period_ns_) quiet_since_ns_ = awake_ns;
       if (gap_ns > limits_.longest_gap_ns || missed_ > allowed) {
         in_time_ = false;
         quiet_since_ns_ = awake_ns;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -253,6 +254,50 @@ TEST(Core, BusOffAndErrorPassiveAreOneFaultEachUntilTheBusIsWell) {
   heard.core.add_bus_error(kErrorFrame | kRestarted, 0);
   heard.core.add_bus_error(kErrorFrame | kBusOff, 0);
   EXPECT_EQ(faults(), 4U);
+}
+
+// An active core whose controller reports every 20 ms and takes every correction; at `late_s` the loop falls out of
+// time, if ever.
+Heard play_with_controller(double late_s) {
+  Heard heard{settings_of(chattering_cut(), RuntimeMode::active)};
+  std::int64_t told_ns = 0;
+  std::size_t answered = 0;
+  bool late_told = false;
+  heard.play(record(chattering_cut()), [&](std::int64_t now_ns) {
+    for (; answered < heard.corrections.size(); ++answered) {
+      heard.core.add_ack({.stamp_ns = now_ns, .sequence = heard.corrections[answered].sequence, .accepted = true});
+    }
+    if (now_ns - told_ns >= 20 * kMillisecond) {
+      RobotState state = state_at(told_ns = now_ns);
+      state.spindle_speed_rpm = 9000.0;
+      heard.core.add_robot_state(state);
+    }
+    if (!late_told && static_cast<double>(now_ns - kStart) * 1e-9 > late_s) {
+      late_told = true;
+      heard.core.add_timing({.stamp_ns = now_ns, .in_time = false, .longest_gap_ns = 40 * kMillisecond});
+      heard.listen();
+    }
+  });
+  return heard;
+}
+
+TEST(Core, OutOfTimeItTellsAFaultReleasesAndAsksForNothing) {
+  const Heard in_time = play_with_controller(1e9);
+  const auto asks = [](const Correction& c) { return c.kind != CorrectionKind::release; };
+  ASSERT_TRUE(std::any_of(in_time.corrections.begin(), in_time.corrections.end(), asks));
+  EXPECT_TRUE(only(in_time.events, EventType::fault).empty());
+  const auto first = std::find_if(in_time.corrections.begin(), in_time.corrections.end(), asks);
+  const double asked_s = static_cast<double>(first->stamp_ns - kStart) * 1e-9;
+
+  const Heard late = play_with_controller(asked_s + 0.05);
+  const std::vector<Event> faults = only(late.events, EventType::fault);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_STREQ(faults[0].note.data(), "the loop cannot keep time: stood still for 40.0 ms; see 'stillcut doctor'");
+  EXPECT_TRUE(std::any_of(late.corrections.begin(), late.corrections.end(), asks));
+  for (const Correction& c : late.corrections) {
+    EXPECT_TRUE(c.stamp_ns <= faults[0].stamp_ns || c.kind == CorrectionKind::release) << c.stamp_ns - kStart;
+  }
+  EXPECT_STREQ(late.corrections.back().reason.data(), "the loop cannot keep time");
 }
 
 }  // namespace
