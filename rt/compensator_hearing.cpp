@@ -11,7 +11,7 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kUnknownKindWaits_ns = 150'000'000;  // a line on a spindle order may still prove to be forced
-constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000, kUnpredictedFaintWaits_ns = 3'000'000'000;
+constexpr std::int64_t kUnpredictedWaits_ns = 1'000'000'000, kUnpredictedFaintWaits_ns = 4'000'000'000;
 constexpr double kBeyondDoubt = 3.0;  // of the indicator
 constexpr std::int64_t kUnpredictedStructureWaits_ns = 3'000'000'000;
 constexpr std::int64_t kPatience_ns =

@@ -12,6 +12,8 @@ attempt no_cell cell/none.toml
 attempt bad_key cell/bad_key.toml
 attempt no_dbc cell/no_dbc.toml
 attempt no_interface cell/no_interface.toml
+sed 's/^mode = .*/mode = "active"/' cell/live.toml > cell/active.toml
+attempt not_in_time cell/active.toml --cpu 63
 attempt no_folder cell/live.toml --record none/record.log
 ip route del 224.0.0.0/4
 attempt no_route cell/live.toml
@@ -23,6 +25,7 @@ EXPECTED = {  # exit status, and what the line must name
     "bad_key": (3, "teeth"),
     "no_dbc": (3, "none.dbc"),
     "no_interface": (4, "vcan9"),
+    "not_in_time": (4, "--allow-not-real-time"),  # no such processor
     "no_folder": (3, "none/record.log"),
     "no_route": (4, "ip route add"),
 }
