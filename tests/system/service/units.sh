@@ -30,3 +30,13 @@ tail -n 1 "$work/rated"
 sed -i '/^SystemCallFilter\|^CapabilityBoundingSet/d' "$work/stillcutd@.service"
 ! rate > /dev/null || fail 'a service without system-call filter and with every capability passed'
 grep -q CAP_NET_ADMIN "$units/stillcutd@.service" && fail 'CAP_NET_ADMIN is not to be had' || true
+
+# The back-off, its sleeping replaced by saying: four restarts at once, then twice as long each, half a minute at most.
+mkdir "$work/bin"
+printf '#!/bin/sh\necho "$1"\n' > "$work/bin/sleep"
+chmod 755 "$work/bin/sleep"
+waits() { for _ in {1..12}; do RUNTIME_DIRECTORY=$work PATH=$work/bin:$PATH "$units/back-off" | grep -v 'in a row' || echo 0; done | paste -sd' '; }
+waited=$(waits)
+[ "$waited" = '0 0 0 0 0 1 2 4 8 16 30 30' ] || fail "back-off waits for $waited s"
+echo "$(($(date +%s) - 61)) 7" > "$work/starts"
+[ "$(RUNTIME_DIRECTORY=$work "$units/back-off")" = '' ] || fail 'a start after a quiet minute waits'
