@@ -1,9 +1,10 @@
 #!/bin/bash
-# service.sh BUILD HANG_LOOP
+# service.sh BUILD HANG_LOOP [long]
 #
 # The installed package under a real systemd: makes a Debian 12 root folder, installs an older version in it, upgrades,
 # purges (nothing may be left), installs again, and boots the folder in User-mode Linux with systemd as process 1, where
 # guest-test plays on. Needs root, as every installation does. BUILD/packages has the packages, from packages.sh.
+# long: there also with a wrong cell file, a missing interface, and a purge while the service runs.
 # The folder without the package is kept as BUILD/service-root.tar: making it takes half a minute.
 set -eu
 build=$1 hang_loop=$2
@@ -47,6 +48,7 @@ files > "$work/after"
 diff "$work/before" "$work/after" || fail 'the purge left or took the above'
 echo "install, upgrade, remove, purge: nothing is left"
 in_root dpkg -i "/$(basename "$package")"
+rm "$root"/*.deb
 
 # A guest: this kernel's modules, no consoles and timers, the test and its helpers.
 mkdir -p "$root/usr/lib/modules" "$root/test/classes"
@@ -61,6 +63,7 @@ rm -rf "$units"/getty.target.wants
 echo guest > "$root/etc/hostname"
 install -m 644 "$here"/test.{service,target} "$units"
 install -m 644 "$here"/{guest-test,controller.py,scenario.toml} "$here/../adapter_peer.py" "$hang_loop" "$root/test"
+[ "${3:-}" != long ] || touch "$root/test/long"
 lcm-gen --python --ppath "$root/test/classes" "$here"/../../../drivers/lcm/*.lcm
 
 memory=/dev/shm
