@@ -78,8 +78,11 @@ TEST(ServiceNotify, IsReadyAtTheFirstTickAndFedByTicksAlone) {
 TEST(ServiceNotify, TellsTheStateInALine) {
   const ManagerSocket manager{""};
   ServiceNotify service;
-  const Status status{.state = State::chatter, .mode = RuntimeMode::active, .spindle_speed_rpm = 8500.2,
-                      .frames = 1234, .frames_lost = 2};
+  const Status status{.state = State::chatter,
+                      .mode = RuntimeMode::active,
+                      .spindle_speed_rpm = 8500.2,
+                      .frames = 1234,
+                      .frames_lost = 2};
   service.progress(1, status, kSecond_ns);
   service.progress(2, status, 2 * kSecond_ns);  // the same again says nothing
   EXPECT_EQ(manager.heard(), (Messages{"READY=1", "STATUS=chatter, active, 8500 rpm, 1234 frames, 2 lost"}));

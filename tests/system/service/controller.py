@@ -2,7 +2,7 @@
 project's, and writes what it is set to, with the time (s, monotonic), each time that changes:
 
     12.345 corrected kind=1 rpm=7560
-    13.100 nominal expired            or released
+    13.100 nominal expired            or released, with the reason
 """
 import sys
 import time
@@ -28,7 +28,7 @@ while True:
             continue
         sequence, utime, before = message.sequence, message.utime, correction
         correction, expires = message if message.kind else None, time.monotonic() + 1e-3 * message.valid_for_ms
-        if before and not correction:
+        if not correction and (before or message.reason == "daemon ends"):  # the last word is owed in any case
             now_set_to(f"nominal released: {message.reason}")
         if correction and not before:
             now_set_to(f"corrected kind={message.kind} rpm={message.spindle_speed_target_rpm:.0f}")
