@@ -10,15 +10,21 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/files/cell.hpp"
+#include "rt/periodic.hpp"
+#include "rt/snapshot.hpp"
 #include "tools/live_run.hpp"
+#include "tools/service_notify.hpp"
 
 namespace stillcut {
 namespace {
 
-// Sleeps until a signal, the end of the loop, or the wanted duration.
-void wait_for_the_end(const sigset_t& signals, const LiveRun& run, double duration_s) {
+// Sleeps until a signal, the end of the loop, or the wanted duration; tells the service manager how the loop gets on.
+void wait_for_the_end(const sigset_t& signals, const LiveRun& run, Snapshot<Status>& newest, ServiceNotify& service,
+                      double duration_s) {
   const auto started = std::chrono::steady_clock::now();
   while (!run.ended()) {
+    newest.update();
+    service.progress(run.ticks(), newest.value(), monotonic_ns());
     const timespec tenth{0, 100'000'000};
     if (const int signal = sigtimedwait(&signals, nullptr, &tenth); signal > 0) {
       spdlog::info("{} received", signal == SIGTERM ? "SIGTERM" : "SIGINT");
@@ -42,6 +48,8 @@ void run_daemon(const DaemonOptions& options) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread: all inherit it, only this one waits for them
 
   const Cell cell = read_cell(options.cell);
+  ServiceNotify service;
+  Snapshot<Status> newest{Status{.mode = cell.mode}};
   LiveRun run{cell,
               require(cell, cell.can, "can").bus,
               open_lcm(cell.lcm_url),
@@ -51,8 +59,11 @@ void run_daemon(const DaemonOptions& options) {
                .cpu = options.cpu,
                .audit = options.audit,
                .allow_not_real_time = options.allow_not_real_time,
-               .on_output = {}}};
-  wait_for_the_end(signals, run, options.duration_s);
+               .on_output = [&newest](const Output& output) {
+                 if (output.type == Output::Type::status) newest.publish(output.status);
+               }}};
+  wait_for_the_end(signals, run, newest, service, options.duration_s);
+  service.stopping();
   run.stop();
 
   const nlohmann::ordered_json summary = run.summary();

@@ -169,6 +169,8 @@ LiveRun::~LiveRun() { parts_->stop(); }
 
 bool LiveRun::ended() const { return parts_->loop_ended.load(std::memory_order_acquire); }
 
+std::uint64_t LiveRun::ticks() const { return parts_->channels->times.loop.ticks.load(std::memory_order_relaxed); }
+
 void LiveRun::stop() { parts_->stop(); }
 
 nlohmann::ordered_json LiveRun::summary() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -40,6 +41,9 @@ class LiveRun {
 
   // The bus has come to its end (a log).
   [[nodiscard]] bool ended() const;
+
+  // Of the loop since its start: they go on as long as it lives.
+  [[nodiscard]] std::uint64_t ticks() const;
 
   // Ends the loop, publishes what is left and the release that every end owes the controller.
   void stop();

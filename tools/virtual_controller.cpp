@@ -80,11 +80,14 @@ void VirtualController::take(const Heard& heard, double time) {
   expires_ = heard.expires;
 }
 
-// Only an active correction is to be followed, and none that is older than one already seen.
+// Only an active correction is to be followed, and none that is older than one already seen. A monitor that was started
+// anew counts from the beginning again: it is heard once nothing of the one before is in force.
 void VirtualController::act_on(const Heard& heard, double time, const RobotState& program) {
   const Correction& c = heard.correction;
-  if (c.mode != RuntimeMode::active || c.sequence <= last_sequence_) return;
+  const bool of_another_monitor = !correction_ && c.sequence < last_sequence_ && c.stamp_ns > last_stamp_ns_;
+  if (c.mode != RuntimeMode::active || (c.sequence <= last_sequence_ && !of_another_monitor)) return;
   last_sequence_ = c.sequence;
+  last_stamp_ns_ = c.stamp_ns;
   const std::string_view reason = reason_to_refuse(heard, time);
   if (reason.empty()) {
     take(heard, time);

@@ -63,7 +63,7 @@ class VirtualController {
   ControllerScript script_;
   SpindleLimits limits_;
   std::int64_t origin_ns_;
-  std::int64_t cycles_ = 0, last_sequence_ = -1;
+  std::int64_t cycles_ = 0, last_sequence_ = -1, last_stamp_ns_ = 0;
   double time_ = 0.0, speed_, feed_ = 1.0, turn_ = 0.0;
   std::vector<Heard> inbox_;
   std::optional<Correction> correction_;  // in force

@@ -154,5 +154,28 @@ TEST(VirtualController, TakesNoCorrectionThatIsOlderThanOneSeen) {
   EXPECT_LT(bench.rpm(), 9000);
 }
 
+// Its sequence begins at one again, which must not keep the controller from hearing it for the rest of the day.
+TEST(VirtualController, HearsAMonitorThatWasStartedAnew) {
+  const auto stamped = [](Correction c, std::int64_t stamp_ns) {
+    c.stamp_ns = stamp_ns;
+    return c;
+  };
+  ControllerBench bench;
+  bench.controller.receive(stamped(ask_for(9000, 40), 2'000), bench.time);
+  bench.run_until(0.1);
+  bench.controller.receive(stamped(ask_for(9500, 1), 3'000), bench.time);  // the first one's is still in force
+  bench.run_until(1.0);
+  ASSERT_FALSE(bench.controller.corrected());
+  EXPECT_EQ(bench.acks.size(), 1U);
+  bench.controller.receive(stamped(ask_for(9600, 39), 1'000), bench.time);  // an old message of the first
+  bench.run_until(1.1);
+  EXPECT_EQ(bench.acks.size(), 1U);
+  bench.controller.receive(stamped(ask_for(9700, 2), 4'000), bench.time);
+  bench.run_until(1.2);
+  ASSERT_EQ(bench.acks.size(), 2U);
+  EXPECT_EQ(bench.acks[1].sequence, 2);
+  EXPECT_TRUE(bench.controller.corrected());
+}
+
 }  // namespace
 }  // namespace stillcut
