@@ -15,12 +15,16 @@
 namespace stillcut {
 namespace {
 
-// Sleeps until a signal, the end of the loop, or the wanted duration.
-void wait_for_the_end(const sigset_t& signals, const LiveRun& run, double duration_s) {
+// Sleeps until a signal, the end of the loop, or the wanted duration. SIGUSR1 marks the recording.
+void wait_for_the_end(const sigset_t& signals, LiveRun& run, double duration_s) {
   const auto started = std::chrono::steady_clock::now();
   while (!run.ended()) {
     const timespec tenth{0, 100'000'000};
-    if (const int signal = sigtimedwait(&signals, nullptr, &tenth); signal > 0) {
+    const int signal = sigtimedwait(&signals, nullptr, &tenth);
+    if (signal == SIGUSR1) {
+      spdlog::info("SIGUSR1 received: the recording is marked");
+      run.mark("operator");
+    } else if (signal > 0) {
       spdlog::info("{} received", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       return;
     }
@@ -39,6 +43,7 @@ void run_daemon(const DaemonOptions& options) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread: all inherit it, only this one waits for them
 
   const Cell cell = read_cell(options.cell);
@@ -46,6 +51,7 @@ void run_daemon(const DaemonOptions& options) {
               require(cell, cell.can, "can").bus,
               open_lcm(cell.lcm_url),
               {.record = options.record,
+               .cell_records = true,
                .events = options.events,
                .priority = options.priority,
                .cpu = options.cpu,

@@ -15,11 +15,14 @@
 namespace stillcut {
 
 struct LiveRunOptions {
-  std::string record;  // file for a plain candump log of what went into the core; empty: none
-  std::string events;  // file for the events as CSV; empty: none
-  int priority = 80;   // SCHED_FIFO
-  int cpu = -1;        // processor of the loop; -1: any
-  bool audit = false;  // end with status 134 at the loop's first forbidden system call
+  // FILE.log: a plain candump log of the frames that went into the core; else a recording's folder, in the place of the
+  // cell's own; empty: as the cell says.
+  std::string record;
+  bool cell_records = true;  // where the cell names a folder; false: only what `record` asks for
+  std::string events;        // file for the events as CSV; empty: none
+  int priority = 80;         // SCHED_FIFO
+  int cpu = -1;              // processor of the loop; -1: any
+  bool audit = false;        // end with status 134 at the loop's first forbidden system call
   std::function<void(const Output&)>
       on_output;  // told of all that is published, on the publisher's thread; may be empty
 };
@@ -38,6 +41,9 @@ class LiveRun {
 
   // The bus has come to its end (a log).
   [[nodiscard]] bool ended() const;
+
+  // Keeps the seconds about now in the recording; nothing where none is made.
+  void mark(const std::string& why);
 
   // Ends the loop, publishes what is left and the release that every end owes the controller.
   void stop();
