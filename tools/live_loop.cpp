@@ -23,7 +23,7 @@ std::int64_t realtime_ns() noexcept {
 }
 
 bool LiveLoop::tick() noexcept {
-  const std::int64_t before_ns = realtime_ns();
+  const std::int64_t before_ns = clock_();
   if (channels_.lobes.update()) take_lobes(channels_.lobes.value());
   if (channels_.ahead.update()) take_lobes(channels_.ahead.value());
   bool drained = false;

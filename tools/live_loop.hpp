@@ -43,10 +43,13 @@ struct LoopChannels {
 
 class LiveLoop {
  public:
+  using Clock = std::int64_t (*)() noexcept;
+
   // live_clock: the bus stamps with this host's CLOCK_REALTIME, so silence can be told from it; false for a log.
   // record: hand all that goes into the core to the recorder's ring. All references must outlive the loop.
-  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record) noexcept
-      : bus_{bus}, pipeline_{pipeline}, channels_{channels}, live_clock_{live_clock}, record_{record} {}
+  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record,
+           Clock clock = realtime_ns) noexcept
+      : bus_{bus}, pipeline_{pipeline}, channels_{channels}, live_clock_{live_clock}, record_{record}, clock_{clock} {}
 
   // One tick on the real-time thread; false when the bus has come to its end (a log). No allocation, no lock, no system
   // call but receive and clock.
@@ -66,6 +69,7 @@ class LiveLoop {
   Pipeline& pipeline_;
   LoopChannels& channels_;
   bool live_clock_, record_;
+  Clock clock_;
   std::array<CanFrame, 64> batch_{};
   RobotMessage waiting_{};
   bool has_waiting_ = false;

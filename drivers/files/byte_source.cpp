@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <vector>
@@ -13,15 +14,16 @@
 namespace stillcut {
 
 struct ByteSource::Decompression {
-  Decompression() : stream{ZSTD_createDStream()}, buffer(ZSTD_DStreamInSize()) {}
+  Decompression() : stream{ZSTD_createDStream()}, wanted{ZSTD_initDStream(stream)}, buffer(ZSTD_DStreamInSize()) {}
   ~Decompression() { ZSTD_freeDStream(stream); }
   Decompression(const Decompression&) = delete;
   Decompression& operator=(const Decompression&) = delete;
 
   ZSTD_DStream* stream;
+  std::size_t wanted;  // bytes up to the end of the next block
   std::vector<char> buffer;
-  ZSTD_inBuffer in{nullptr, 0, 0};
-  bool more_inside = false;  // the last call filled what it was given
+  std::size_t begin = 0, end = 0;  // unread part of the buffer
+  bool more_inside = false;        // the last call filled what it was given
   bool damaged = false;
 };
 
@@ -58,16 +60,21 @@ std::size_t ByteSource::read_file(char* to, std::size_t bytes) noexcept {
   return got > 0 ? static_cast<std::size_t>(got) : 0;
 }
 
-// What follows damage (a power cut may leave a page of zeros at the end) cannot be told from noise: it ends there.
+// Block by block: where one is damaged, zstd gives nothing of what the same call decompressed before it. What follows
+// damage (a power cut may leave a page of zeros at the end) cannot be told from noise: it ends there.
 std::size_t ByteSource::decompress(char* to, std::size_t bytes) noexcept {
   Decompression& d = *decompression_;
   ZSTD_outBuffer out{to, bytes, 0};
   while (out.pos == 0 && bytes > 0 && !d.damaged) {
-    if (d.in.pos == d.in.size && !d.more_inside) {
-      d.in = {d.buffer.data(), read_file(d.buffer.data(), d.buffer.size()), 0};
-      if (d.in.size == 0) return 0;
+    if (d.begin == d.end && !d.more_inside) {
+      d.begin = 0;
+      d.end = read_file(d.buffer.data(), d.buffer.size());
+      if (d.end == 0) return 0;
     }
-    d.damaged = ZSTD_isError(ZSTD_decompressStream(d.stream, &out, &d.in)) != 0;
+    ZSTD_inBuffer in{d.buffer.data() + d.begin, std::min(d.end - d.begin, std::max<std::size_t>(d.wanted, 1)), 0};
+    d.wanted = ZSTD_decompressStream(d.stream, &out, &in);
+    d.begin += in.pos;
+    d.damaged = ZSTD_isError(d.wanted) != 0;
     d.more_inside = out.pos == out.size;
   }
   return out.pos;
