@@ -144,6 +144,7 @@ void replay(const ReplayOptions& options) {
                                       {"chatter_onsets", tally.chatter_onsets},
                                       {"corrections", tally.corrections},
                                       {"faults", tally.faults}};
+    summary["start_utime"] = core.origin_ns() / 1000;
     if (robot.is_recording()) {
       summary["recorded_outputs"] = robot.published().size();
       summary["replayed_outputs"] = comparison.count();

@@ -11,9 +11,9 @@ until_true() {
 
 listening() { grep -qs '^ *vcan0 ' /proc/net/can/rcvlist_{all,fil,sff,eff,inv}; }
 
-# start_daemon [OPTION...]: stillcutd on vcan0, recording to record.log, events to live.csv; returns when its socket listens.
+# start_daemon [OPTION...]: stillcutd on vcan0, recording to $record (record.log), events to live.csv; returns when its socket listens.
 start_daemon() {
-  ./stillcutd cell/live.toml --record record.log --events live.csv --json "$@" > daemon.out 2> daemon.err &
+  ./stillcutd cell/live.toml --record "${record:-record.log}" --events live.csv --json "$@" > daemon.out 2> daemon.err &
   daemon=$!
   until_true listening
 }
