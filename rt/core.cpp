@@ -98,7 +98,6 @@ void Core::add_bus_error(std::uint32_t id, std::uint8_t controller) noexcept {
 }
 
 void Core::add_timing(const LoopTiming& timing) noexcept {
-  advance(timing.stamp_ns);
   in_time_ = timing.in_time;
   if (in_time_) return;
   char note[96];

@@ -10,7 +10,10 @@ int run_stillcutd(int argc, char** argv) {
   app.set_version_flag("--version", STILLCUT_VERSION);
   DaemonOptions options;
   app.add_option("CELL", options.cell, "cell file")->required();
-  app.add_option("--record", options.record, "write every frame that was used to FILE, as 'candump -L' would");
+  app.add_option(
+      "--record", options.record,
+      "FILE.log: write every frame that was used, as 'candump -L' would; a folder: record all that goes in and comes "
+      "out, compressed, for 'stillcut replay CELL --can FOLDER' (SIGUSR1 marks what is to be kept)");
   app.add_option("--events", options.events, "write the events to FILE as CSV");
   app.add_option("--duration", options.duration_s, "end after this many seconds (default: on SIGTERM)");
   app.add_option("--priority", options.priority, "SCHED_FIFO priority of the loop")
@@ -22,7 +25,9 @@ int run_stillcutd(int argc, char** argv) {
                "on the bench: run active mode though this host cannot keep time, and release nothing when it does not");
   app.add_flag("--audit", options.audit,
                "abort (status 134) at the loop's first system call but receive, sleep and clock");
-  app.footer("Example:\n  stillcutd /etc/stillcut/cell.toml --record cut.log --events events.csv");
+  app.footer(
+      "Example:\n  stillcutd /etc/stillcut/cell.toml --record cut.log --events events.csv\n"
+      "  stillcutd /etc/stillcut/cell.toml --record /var/lib/stillcut/recording");
   app.callback([&] { run_daemon(options); });
   return run_command_line(app, argc, argv);
 }

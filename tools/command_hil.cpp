@@ -31,7 +31,7 @@ constexpr std::int64_t kUntilStart_ns = 300'000'000;            // real time: fo
 constexpr std::chrono::milliseconds kLastWords{200};            // for what is still on its way at the end
 
 struct HilOptions {
-  std::string cell, scenario, plot, events;
+  std::string cell, scenario, plot, events, record;
   bool shadow = false, json = false, data_time = false, live = false, compare = false;
 };
 
@@ -112,7 +112,8 @@ void say_late(const PlantReport& plant) {
 
 // Daemon and machine in this process, in real time. They meet on a bus and an LCM network of their own, so that nothing
 // else is needed and nothing real moves, unless the user wants those of the cell.
-HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std::function<void(double)>& progress) {
+HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std::string& record,
+                const std::function<void(double)>& progress) {
   const std::string own_bus = "local:stillcut-hil-" + std::to_string(getpid());
   const std::string bus_name = live ? cell.can->bus : own_bus;
   spdlog::set_default_logger(
@@ -125,7 +126,9 @@ HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std
                                  {.on_correction = [&](const Correction& c) { inbox.add(Output{c}); }, .on_event = {}},
                                  MonitorListener::Thread::none};
   LiveRunOptions options;
-  options.allow_not_real_time = true;              // the machine is a simulated one
+  options.allow_not_real_time = true;  // the machine is a simulated one
+  options.record = record;
+  options.cell_records = live;
   options.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
     if (output.type != Output::Type::correction) inbox.add(output);
   };
@@ -198,6 +201,8 @@ void hil(const HilOptions& options) {
     throw CLI::ValidationError("--compare", "runs several times in data time; leave --live, --shadow, --events out");
   if (options.data_time && options.live)
     throw CLI::ValidationError("--live", "--data-time has neither bus nor LCM; leave one of the two out");
+  if (!options.record.empty() && (options.data_time || options.compare))
+    throw CLI::ValidationError("--record", "records a run in real time; leave --data-time and --compare out");
   check_outputs(options);
   Cell cell = read_cell(options.cell, {.bus = options.live});
   if (options.live) check_can_send(cell);
@@ -206,8 +211,8 @@ void hil(const HilOptions& options) {
   if (options.compare) return compare(options, cell, scenario);
   Progress progress{"running"};
   const auto show = [&](double share) { progress.update(share); };
-  const HilRun run =
-      options.data_time ? run_without_clock(cell, scenario, show) : run_live(cell, scenario, options.live, show);
+  const HilRun run = options.data_time ? run_without_clock(cell, scenario, show)
+                                       : run_live(cell, scenario, options.live, options.record, show);
   progress.finish();
   report(options, cell, scenario, run);
 }
@@ -252,6 +257,7 @@ void add_hil_command(CLI::App& app) {
   command->add_flag("--data-time", options->data_time, "as fast as it goes, without clock and threads: repeatable");
   command->add_flag("--compare", options->compare,
                     "the cut not corrected, corrected, and at a depth that is sound as programmed (data time)");
+  command->add_option("--record", options->record, "record as stillcutd does, FILE.log or a folder (not in data time)");
   command->add_flag("--live", options->live,
                     "on the bus and the LCM network that the cell names (default: on private ones)");
   command->footer(

@@ -1,16 +1,14 @@
 // `stillcut replay`: plays a CAN log through the daemon's own code, as fast as it goes, and writes down what was
 // decided.
+#include <algorithm>
 #include <chrono>
-#include <deque>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "drivers/can/candump_log.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/lcm/connection.hpp"
-#include "drivers/lcm/lcm_log.hpp"
 #include "drivers/lcm/publisher.hpp"
 #include "tools/commands.hpp"
 #include "tools/event_csv.hpp"
@@ -19,7 +17,9 @@
 #include "tools/plot_replay.hpp"
 #include "tools/predictor.hpp"
 #include "tools/progress.hpp"
+#include "tools/recorded_frames.hpp"
 #include "tools/replay_trace.hpp"
+#include "tools/robot_playback.hpp"
 
 namespace stillcut {
 namespace {
@@ -30,48 +30,42 @@ struct ReplayOptions {
   bool json = false;
 };
 
-// The robot's messages of an LCM log, in step with the frames.
-class RobotMessages {
- public:
-  RobotMessages(const std::string& file, double offset_s, Predictor& predictor) : predictor_{predictor} {
-    if (file.empty()) return;
-    LcmLogReader reader{file};
-    while (auto message = reader.next()) {
-      std::visit([&](auto& m) { m.stamp_ns += static_cast<std::int64_t>(offset_s * 1e9); }, *message);
-      waiting_.push_back(*message);
-    }
-    bad_ = reader.bad();
-  }
-
-  // Hands over all whose time has come, each with the lobes of its posture.
-  void feed_until(std::int64_t stamp_ns, Core& core) {
-    while (!waiting_.empty() && std::visit([](const auto& m) { return m.stamp_ns; }, waiting_.front()) <= stamp_ns) {
-      const RobotMessage message = waiting_.front();
-      waiting_.pop_front();
-      if (const auto* state = std::get_if<RobotState>(&message)) {
-        core.add_robot_state(*state);
-        if (!pace_.due(*state)) continue;
-        if (const auto diagram = predictor_.at(*state)) core.add_lobes(*diagram);
-      } else if (const auto* ack = std::get_if<CorrectionAck>(&message)) {
-        core.add_ack(*ack);
-      } else {
-        core.add_lobes(predictor_.along(std::get<RobotPath>(message)));
-      }
-    }
-  }
-  [[nodiscard]] std::int64_t bad() const { return bad_; }
-
- private:
-  Predictor& predictor_;
-  PredictionPace pace_;
-  std::deque<RobotMessage> waiting_;
-  std::int64_t bad_ = 0;
-};
-
 std::ofstream open_for_writing(const std::string& file) {
   std::ofstream out{file, std::ios::binary};
   if (!out) throw InputError(file, 0, "cannot be written; check the folder and its rights");
   return out;
+}
+
+// Events and corrections decided again, beside those that the live run published.
+class OutputComparison {
+ public:
+  void add(const Output& output) {
+    if (output.type == Output::Type::event) decided_.push_back(encode(output.event));
+    if (output.type == Output::Type::correction) decided_.push_back(encode(output.correction));
+  }
+  [[nodiscard]] std::size_t count() const { return decided_.size(); }
+  // How many from the first on are the same, bit for bit.
+  [[nodiscard]] std::size_t same_as(const std::vector<MessageBytes>& published) const {
+    const auto differ = std::mismatch(decided_.begin(), decided_.end(), published.begin(), published.end());
+    return static_cast<std::size_t>(differ.first - decided_.begin());
+  }
+
+ private:
+  std::vector<MessageBytes> decided_;
+};
+
+// A recording is decided again as it was, unless something is missing of it.
+void warn_of_differences(const PlaybackFiles& files, const RobotPlayback& robot, const OutputComparison& comparison) {
+  const std::size_t same = comparison.same_as(robot.published());
+  if (robot.lobes_missing() > 0)
+    std::cerr << "stillcut: " << robot.lobes_missing() << " stability lobe diagrams cannot be made again\n";
+  if (same == std::min(comparison.count(), robot.published().size())) return;  // a crash may cut one of them short
+  std::cerr << "stillcut: the live run decided otherwise from its decision " << same + 1 << " of "
+            << robot.published().size() << " on: "
+            << (!files.from_the_start ? "the beginning of this recording was deleted"
+                : robot.lost() > 0    ? "the recording has holes"
+                                      : "is this the cell file of that run?")
+            << '\n';
 }
 
 void replay(const ReplayOptions& options) {
@@ -82,8 +76,9 @@ void replay(const ReplayOptions& options) {
   Pipeline pipeline{cell};
   Core& core = pipeline.core();
   Predictor predictor{cell};
-  CandumpReader log{options.can};
-  RobotMessages robot{options.lcm, options.lcm_offset_s, predictor};
+  const PlaybackFiles files = playback_files(options.can, options.lcm);
+  RecordedFrames log{files.can};
+  RobotPlayback robot{files.lcm, options.lcm_offset_s, predictor};
   std::optional<Publisher> publisher;
   if (!options.publish.empty()) publisher.emplace(open_lcm(options.publish));
   const NominalPrediction prediction = predictor.nominal();
@@ -100,20 +95,11 @@ void replay(const ReplayOptions& options) {
   std::optional<TraceCollector> trace;
   if (!options.plot.empty()) trace.emplace(cell);
   EventTally tally;
-  Progress progress{"replaying"};
-  std::error_code no_size;  // a pipe has none
-  const double size =
-      static_cast<double>(std::max<std::uintmax_t>(1, std::filesystem::file_size(options.can, no_size)));
-  constexpr double kBytesAFrame = 150.0;  // about; for the bar only
-  std::int64_t last_ns = 0;
-  const auto started = std::chrono::steady_clock::now();
-  CanFrame frame;
-  while (log.next(frame)) {
-    if (frame.stamp_ns >= last_ns) robot.feed_until(last_ns = frame.stamp_ns, core);
-    const bool heard = pipeline.feed(frame);
-    if (trace && heard) trace->add(pipeline);
+  OutputComparison comparison;
+  const auto take_outputs = [&] {
     for (const Output& output : core.outputs()) {
       if (publisher) publisher->publish(output);
+      if (robot.is_recording()) comparison.add(output);
       if (output.type != Output::Type::event) continue;
       tally.count(output.event);
       if (!options.events.empty()) write_event(events, output.event, core.origin_ns());
@@ -121,8 +107,21 @@ void replay(const ReplayOptions& options) {
       if (trace) trace->add(output.event, core.origin_ns());
     }
     core.clear_outputs();
-    if ((log.frames() & 0x3FF) == 0) progress.update(static_cast<double>(log.frames()) * kBytesAFrame / size);
+  };
+  Progress progress{"replaying"};
+  constexpr double kBytesAFrame = 150.0;  // about; for the bar only
+  std::int64_t last_ns = 0;
+  const auto started = std::chrono::steady_clock::now();
+  CanFrame frame;
+  while (log.next(frame)) {
+    if (frame.stamp_ns >= last_ns) robot.feed_until(last_ns = frame.stamp_ns, core, take_outputs);
+    const bool heard = pipeline.feed(frame);
+    if (trace && heard) trace->add(pipeline);
+    take_outputs();
+    if ((log.frames() & 0x3FF) == 0) progress.update(static_cast<double>(log.frames()) * kBytesAFrame / log.bytes());
   }
+  robot.finish(core, take_outputs);
+  take_outputs();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double signal_s = static_cast<double>(last_ns - core.origin_ns()) * 1e-9;
 
@@ -130,19 +129,27 @@ void replay(const ReplayOptions& options) {
     throw InputError(options.events, 0, "cannot be written to its end; is the disk full?");
   }
   if (const std::string warning = log.warning(); !warning.empty()) std::cerr << "stillcut: " << warning << '\n';
-  if (robot.bad() > 0) std::cerr << "stillcut: " << options.lcm << ": " << robot.bad() << " bad messages passed over\n";
+  if (robot.bad() > 0)
+    std::cerr << "stillcut: " << files.lcm.front().string() << ": " << robot.bad() << " bad messages passed over\n";
+  if (robot.is_recording()) warn_of_differences(files, robot, comparison);
   if (trace) plot_replay(trace->finish(), options.plot);
   const std::int64_t bad = log.frames_bad() + pipeline.decoder().counters().frames_bad;
   if (options.json) {
-    const nlohmann::ordered_json summary = {{"signal_s", signal_s},
-                                            {"wall_s", wall_s},
-                                            {"frames", log.frames()},
-                                            {"frames_lost", core.counters().frames_lost},
-                                            {"frames_bad", bad},
-                                            {"frames_out_of_order", core.counters().frames_out_of_order},
-                                            {"chatter_onsets", tally.chatter_onsets},
-                                            {"corrections", tally.corrections},
-                                            {"faults", tally.faults}};
+    nlohmann::ordered_json summary = {{"signal_s", signal_s},
+                                      {"wall_s", wall_s},
+                                      {"frames", log.frames()},
+                                      {"frames_lost", core.counters().frames_lost},
+                                      {"frames_bad", bad},
+                                      {"frames_out_of_order", core.counters().frames_out_of_order},
+                                      {"chatter_onsets", tally.chatter_onsets},
+                                      {"corrections", tally.corrections},
+                                      {"faults", tally.faults}};
+    summary["start_utime"] = core.origin_ns() / 1000;
+    if (robot.is_recording()) {
+      summary["recorded_outputs"] = robot.published().size();
+      summary["replayed_outputs"] = comparison.count();
+      summary["same_outputs"] = comparison.same_as(robot.published());
+    }
     std::cout << summary.dump() << '\n';
   } else if (tell) {
     std::cout << signal_s << " s of signal in " << wall_s << " s (" << std::llround(signal_s / wall_s)
@@ -158,7 +165,10 @@ void add_replay_command(CLI::App& app) {
       app.add_subcommand("replay", "Play a CAN log through the daemon's own code and list what it decides");
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("CELL", options->cell, "cell file")->required();
-  command->add_option("--can", options->can, "CAN log as 'candump -L' writes it")->required();
+  command
+      ->add_option("--can", options->can,
+                   "CAN log as 'candump -L' writes it, also compressed (.zst), or the folder of a recording")
+      ->required();
   command->add_option("--lcm", options->lcm, "LCM log as lcm-logger writes it: robot states and acknowledgements");
   command->add_option("--lcm-offset", options->lcm_offset_s, "seconds to add to the LCM log's times")
       ->capture_default_str();
@@ -166,7 +176,9 @@ void add_replay_command(CLI::App& app) {
   command->add_option("--plot", options->plot, "draw vibration, spectrogram, indicator and speed (.svg or .png)");
   command->add_option("--publish", options->publish, "publish on LCM as the daemon would, e.g. memq:// or udpm://...");
   command->add_flag("--json", options->json, "print one JSON object");
-  command->footer("Example:\n  stillcut replay cell.toml --can cut.log --events events.csv --plot cut.png");
+  command->footer(
+      "Example:\n  stillcut replay cell.toml --can cut.log --events events.csv --plot cut.png\n"
+      "  stillcut replay cell.toml --can /var/lib/stillcut/recording --events events.csv");
   command->callback([options] { replay(*options); });
 }
 

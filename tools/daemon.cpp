@@ -19,14 +19,19 @@ namespace stillcut {
 namespace {
 
 // Sleeps until a signal, the end of the loop, or the wanted duration; tells the service manager how the loop gets on.
-void wait_for_the_end(const sigset_t& signals, const LiveRun& run, Snapshot<Status>& newest, ServiceNotify& service,
+// SIGUSR1 marks the recording.
+void wait_for_the_end(const sigset_t& signals, LiveRun& run, Snapshot<Status>& newest, ServiceNotify& service,
                       double duration_s) {
   const auto started = std::chrono::steady_clock::now();
   while (!run.ended()) {
     newest.update();
     service.progress(run.ticks(), newest.value(), monotonic_ns());
     const timespec tenth{0, 100'000'000};
-    if (const int signal = sigtimedwait(&signals, nullptr, &tenth); signal > 0) {
+    const int signal = sigtimedwait(&signals, nullptr, &tenth);
+    if (signal == SIGUSR1) {
+      spdlog::info("SIGUSR1 received: the recording is marked");
+      run.mark("operator");
+    } else if (signal > 0) {
       spdlog::info("{} received", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       return;
     }
@@ -45,6 +50,7 @@ void run_daemon(const DaemonOptions& options) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread: all inherit it, only this one waits for them
 
   const Cell cell = read_cell(options.cell);
@@ -54,6 +60,7 @@ void run_daemon(const DaemonOptions& options) {
               require(cell, cell.can, "can").bus,
               open_lcm(cell.lcm_url),
               {.record = options.record,
+               .cell_records = true,
                .events = options.events,
                .priority = options.priority,
                .cpu = options.cpu,

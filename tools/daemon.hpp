@@ -7,7 +7,7 @@ namespace stillcut {
 
 struct DaemonOptions {
   std::string cell;
-  std::string record;                // file for a plain candump log of what went into the core; empty: none
+  std::string record;                // FILE.log or a recording's folder (live_run.hpp)
   std::string events;                // file for the events as CSV; empty: none
   double duration_s = 0;             // end after this long; 0: on SIGTERM or SIGINT
   int priority = 80;                 // SCHED_FIFO

@@ -9,6 +9,7 @@ namespace {
 // How far behind the clock a silent tick moves data time: a frame stamped before that has long been in the socket, so
 // no frame can still come from a time that was declared silent.
 constexpr std::int64_t kBehindClock_ns = 20'000'000;
+constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr std::int64_t kClockStep_ns = 1'000'000'000;  // no frame is held up this long: the clock was set back
 // Frames a tick takes at most, so that a flood delays one tick and not the thread for good.
 constexpr int kBatchesATick = 32;
@@ -24,14 +25,15 @@ std::int64_t realtime_ns() noexcept {
 bool LiveLoop::tick(std::int64_t awake_ns) noexcept {
   StageTimes& stages = channels_.times.stages;
   stages.begin_tick();
-  const std::int64_t before_ns = realtime_ns();
-  if (channels_.lobes.update()) pipeline_.core().add_lobes(channels_.lobes.value());
-  if (channels_.ahead.update()) pipeline_.core().add_lobes(channels_.ahead.value());
+  const std::int64_t before_ns = clock_();
+  if (channels_.lobes.update()) take_lobes(channels_.lobes.value());
+  if (channels_.ahead.update()) take_lobes(channels_.ahead.value());
   drain_bus();
   if (live_clock_ && drained_) {
-    declared_ns_ = std::max(declared_ns_, (before_ns + clock_shift_ns_ - kBehindClock_ns) / 1000 * 1000);
+    declared_ns_ =
+        std::max(declared_ns_, (before_ns + clock_shift_ns_ - kBehindClock_ns) / kSilentStep_ns * kSilentStep_ns);
     feed_messages_until(declared_ns_);
-    pipeline_.core().advance(declared_ns_);
+    feed_silence();
     hand_over();
   }
   if (live_clock_) keep_time(awake_ns);
@@ -50,22 +52,21 @@ void LiveLoop::drain_bus() noexcept {
       const std::int64_t received_ns = batch_[i].stamp_ns;
       place_in_time(batch_[i]);
       feed_messages_until(batch_[i].stamp_ns);
-      pipeline_.feed(batch_[i]);
-      if (record_) (void)channels_.recorded.push(batch_[i]);  // a full ring is counted by the ring
-      if (hand_over() && live_clock_) channels_.times.decision.record(realtime_ns() - received_ns);
+      feed(batch_[i]);
+      if (hand_over() && live_clock_) channels_.times.decision.record(clock_() - received_ns);
     }
   }
 }
 
-// A loop that is out of time only listens. Its word comes into data time behind all that has been fed.
+// A loop that is out of time only listens. Its word takes the next microsecond of data time, as a late message does.
 void LiveLoop::keep_time(std::int64_t awake_ns) noexcept {
   if (!timekeeper_.tick(awake_ns)) return;
   LoopTimes& times = channels_.times;
   times.in_time.store(timekeeper_.in_time(), std::memory_order_relaxed);
   if (!timekeeper_.in_time()) times.times_out.store(times.times_out.load(std::memory_order_relaxed) + 1);
   if (!must_keep_time_) return;
-  pipeline_.core().add_timing({declared_ns_, timekeeper_.in_time(), timekeeper_.longest_gap_ns()});
-  hand_over();
+  timing_ = {fed_ns_ + kMicrosecond_ns, timekeeper_.in_time(), timekeeper_.longest_gap_ns()};
+  has_timing_ = true;
 }
 
 // A frame from a time that was already declared silent (the machine stood still between stamp and socket) counts as of
@@ -81,18 +82,68 @@ void LiveLoop::place_in_time(CanFrame& frame) noexcept {
   }
 }
 
+// Frames lie before and after a message by their stamps alone, in the recording too. A message that comes when data
+// time has passed its stamp counts as of the next microsecond, so that playback finds it the same place.
+void LiveLoop::place_in_time(RobotMessage& message) const noexcept {
+  std::visit([&](auto& m) { m.stamp_ns = std::max(m.stamp_ns + clock_shift_ns_, fed_ns_ + kMicrosecond_ns); }, message);
+}
+
+// A diagram that comes too late (the model thread was busy) comes into use in the next microsecond. Whole microseconds:
+// more a recording does not hold.
+void LiveLoop::take_lobes(const LobesAnswer& answer) noexcept {
+  LobeDiagram diagram = answer.diagram;
+  diagram.usable_from_ns = std::max(diagram.usable_from_ns + clock_shift_ns_, fed_ns_ + kMicrosecond_ns);
+  if (diagram.posture_stamp_ns != 0) diagram.posture_stamp_ns += clock_shift_ns_;
+  if (diagram.usable_until_ns != 0)
+    diagram.usable_until_ns = (diagram.usable_until_ns + clock_shift_ns_) / kMicrosecond_ns * kMicrosecond_ns;
+  pipeline_.core().add_lobes(diagram);
+  record(LobesUsed{fed_ns_ + kMicrosecond_ns, diagram.posture_stamp_ns, diagram.usable_from_ns, diagram.usable_until_ns,
+                   diagram.ahead, answer.question});
+}
+
 void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {
-  while (has_waiting_ || channels_.messages.pop(waiting_)) {
-    has_waiting_ = true;
+  if (has_timing_ && timing_.stamp_ns <= stamp_ns) {
+    pipeline_.core().add_timing(timing_);
+    record(timing_);
+    has_timing_ = false;
+  }
+  for (;;) {
+    if (!has_waiting_) {
+      if (!channels_.messages.pop(waiting_)) return;
+      place_in_time(waiting_);
+      has_waiting_ = true;
+    }
     if (const auto* state = std::get_if<RobotState>(&waiting_)) {
       if (state->stamp_ns > stamp_ns) return;
       pipeline_.core().add_robot_state(*state);
+      record(*state);
     } else if (const auto* ack = std::get_if<CorrectionAck>(&waiting_)) {
       if (ack->stamp_ns > stamp_ns) return;
       pipeline_.core().add_ack(*ack);
+      record(*ack);
     }
     has_waiting_ = false;
   }
+}
+
+void LiveLoop::feed(const CanFrame& frame) noexcept {
+  pipeline_.feed(frame);
+  fed_ns_ = std::max(fed_ns_, frame.stamp_ns);
+  frame_fed_ = true;
+  record(frame);
+}
+
+// Playback knows of a silence only what is recorded of it. Before the first frame there is none.
+void LiveLoop::feed_silence() noexcept {
+  if (declared_ns_ <= fed_ns_) return;
+  pipeline_.core().advance(declared_ns_);
+  if (frame_fed_) record(Silence{declared_ns_, declared_ns_});
+  fed_ns_ = declared_ns_;
+}
+
+// A full ring is counted by the ring.
+void LiveLoop::record(const CoreInput& input) noexcept {
+  if (record_) (void)channels_.recorded.push(input);
 }
 
 bool LiveLoop::hand_over() noexcept {

@@ -4,15 +4,17 @@
 //   model thread        loop                lobes, ahead snapshots, newest diagram of each
 //   subscriber thread   loop                messages     ring, robot states and acknowledgements
 //   loop                publisher thread    outputs      ring, events, corrections, status
-//   loop                recorder thread     recorded     ring, every frame that went into the core
+//   loop                recorder thread     recorded     ring, all that went into the core, in that order
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <variant>
 
 #include "drivers/can/can_bus.hpp"
 #include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/recording_messages.hpp"
 #include "models/lobe_diagram.hpp"
 #include "rt/loop_times.hpp"
 #include "rt/ring.hpp"
@@ -24,28 +26,40 @@ namespace stillcut {
 
 std::int64_t realtime_ns() noexcept;  // this host's CLOCK_REALTIME
 
+// What goes into the core, as the recorder gets it. Of a diagram only that it was taken up.
+using CoreInput = std::variant<CanFrame, RobotState, CorrectionAck, LobesUsed, Silence, LoopTiming>;
+
+// A diagram and the number of the question that it answers (tools/recorder.hpp); 0: nobody records.
+struct LobesAnswer {
+  LobeDiagram diagram;
+  std::int64_t question = 0;
+};
+
 struct LoopChannels {
-  Snapshot<LobeDiagram> lobes, ahead;  // of the present posture, along the announced path
+  Snapshot<LobesAnswer> lobes, ahead;  // of the present posture, along the announced path
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
-  Ring<CanFrame> recorded{32768};          // ten seconds of a triaxial 25.6 kHz sensor
+  Ring<CoreInput> recorded{32768};         // ten seconds of a triaxial 25.6 kHz sensor
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
   LoopTimes times;
 };
 
 class LiveLoop {
  public:
+  using Clock = std::int64_t (*)() noexcept;
+
   // live_clock: the bus stamps with this host's CLOCK_REALTIME, so silence can be told from it; false for a log.
-  // record: hand every frame to the recorder's ring. must_keep_time: out of time, what was asked for is released.
-  // All references must outlive the loop.
-  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record,
-           bool must_keep_time) noexcept
+  // record: hand all that goes into the core to the recorder's ring. must_keep_time: out of time, what was asked for is
+  // released. All references must outlive the loop.
+  LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record, bool must_keep_time,
+           Clock clock = realtime_ns) noexcept
       : bus_{bus},
         pipeline_{pipeline},
         channels_{channels},
         live_clock_{live_clock},
         record_{record},
-        must_keep_time_{must_keep_time} {
+        must_keep_time_{must_keep_time},
+        clock_{clock} {
     pipeline_.set_probe(channels_.times.stages.probe());
   }
 
@@ -57,7 +71,12 @@ class LiveLoop {
   void keep_time(std::int64_t awake_ns) noexcept;
   void drain_bus() noexcept;
   void place_in_time(CanFrame& frame) noexcept;
+  void place_in_time(RobotMessage& message) const noexcept;
+  void take_lobes(const LobesAnswer& answer) noexcept;
   void feed_messages_until(std::int64_t stamp_ns) noexcept;
+  void feed(const CanFrame& frame) noexcept;
+  void feed_silence() noexcept;
+  void record(const CoreInput& input) noexcept;
   bool hand_over() noexcept;  // true: there was something
 
   CanBus& bus_;
@@ -66,9 +85,14 @@ class LiveLoop {
   bool live_clock_, record_, must_keep_time_;
   bool drained_ = false;  // the bus, in this tick
   Timekeeper timekeeper_{kLoopPeriodNs};
+  Clock clock_;
   std::array<CanFrame, 64> batch_{};
+  LoopTiming timing_;
+  bool has_timing_ = false;  // the core has yet to be told
   RobotMessage waiting_{};
   bool has_waiting_ = false;
+  bool frame_fed_ = false;
+  std::int64_t fed_ns_ = 0;          // the core's data time: newest frame, or declared silence
   std::int64_t declared_ns_ = 0;     // up to here data time has been moved on in silence
   std::int64_t clock_shift_ns_ = 0;  // added to the clock and the stamps after the host's clock was set back
 };

@@ -102,10 +102,10 @@ class PublisherThread {
   std::jthread thread_;
 };
 
-// Writes the frames that went into the core as a candump log; on an ordinary thread.
-class RecorderThread {
+// Writes the frames that went into the core, and nothing else, as a plain candump log; on an ordinary thread.
+class FrameLogThread {
  public:
-  RecorderThread(LoopChannels& channels, const std::string& file, std::string interface)
+  FrameLogThread(LoopChannels& channels, const std::string& file, std::string interface)
       : channels_{channels}, interface_{std::move(interface)}, file_{std::fopen(file.c_str(), "wb"), &std::fclose} {
     if (!file_) throw InputError(file, 0, "cannot be written; check the folder and its rights");
     thread_ = std::jthread{[this](const std::stop_token& stop) {
@@ -125,10 +125,11 @@ class RecorderThread {
   static constexpr std::chrono::milliseconds kPoll{20};
 
   void drain() {
-    CanFrame frame;
+    CoreInput input;
     std::array<char, kMaxCandumpLine> line{};
-    while (channels_.recorded.pop(frame)) {
-      std::fwrite(line.data(), 1, format_candump_line(frame, interface_, line), file_.get());
+    while (channels_.recorded.pop(input)) {
+      if (const auto* frame = std::get_if<CanFrame>(&input))
+        std::fwrite(line.data(), 1, format_candump_line(*frame, interface_, line), file_.get());
     }
     if (std::fflush(file_.get()) != 0 && !failed_) {
       failed_ = true;

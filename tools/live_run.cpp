@@ -15,6 +15,7 @@
 #include "tools/live_outputs.hpp"
 #include "tools/predictor.hpp"
 #include "tools/real_time_check.hpp"
+#include "tools/recorder.hpp"
 
 namespace stillcut {
 namespace {
@@ -74,6 +75,27 @@ nlohmann::ordered_json summary_json(const Pipeline& pipeline, const CanBus& bus,
   return json;
 }
 
+bool is_plain_log(const std::string& record) {
+  return record.ends_with(".log") && !std::filesystem::is_directory(record);
+}
+
+// The folder to record into and how; no folder: none.
+RecordingSettings recording_settings(const Cell& cell, const LiveRunOptions& options) {
+  RecordingSettings settings = cell.recording;
+  if (is_plain_log(options.record) || !options.cell_records) settings.folder.clear();
+  if (!options.record.empty() && !is_plain_log(options.record)) settings.folder = options.record;
+  return settings;
+}
+
+void add_recording(nlohmann::ordered_json& summary, const RecorderCounters& recorded) {
+  summary["recorded_frames"] = recorded.frames;
+  summary["recorded_messages"] = recorded.messages;
+  summary["recorded_bytes"] = recorded.bytes;
+  summary["recorded_marks"] = recorded.marks;
+  summary["record_lost"] = recorded.lost;
+  summary["record_stops"] = recorded.stops;
+}
+
 const char* mode_name(RuntimeMode mode) {
   if (mode == RuntimeMode::active) return "active";
   return mode == RuntimeMode::shadow ? "shadow" : "off";
@@ -92,7 +114,8 @@ struct LiveRun::Parts {
   std::unique_ptr<CanBus> bus;
   std::unique_ptr<LoopChannels> channels = std::make_unique<LoopChannels>();
   PublisherThread publisher;
-  std::optional<RecorderThread> recorder;
+  std::optional<FrameLogThread> frame_log;
+  std::unique_ptr<Recorder> recorder;
   Snapshot<RobotState> newest_state;  // now and then a state is for the model thread, every message for the loop
   Snapshot<RobotPath> newest_path;    // for the model thread alone
   PredictionPace pace;                // the subscriber thread's
@@ -107,12 +130,19 @@ struct LiveRun::Parts {
 
 LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm,
                       const LiveRunOptions& options)
-    : pipeline{cell}, predictor{cell}, publisher{*channels, lcm, options.events, cell.mode, options.on_output} {
+    : pipeline{cell},
+      predictor{cell},
+      publisher{*channels, lcm, options.events, cell.mode, [this, on_output = options.on_output](const Output& output) {
+                  if (recorder) recorder->add_output(output);
+                  if (on_output) on_output(output);
+                }} {
   const NominalPrediction prediction = predictor.nominal();
   if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
   pipeline.core().add_lobes(prediction.diagram);
   bus = open_can_bus(bus_name, pipeline.decoder().ids_used());  // last, so that no frame waits for the prediction
-  if (!options.record.empty()) recorder.emplace(*channels, options.record, interface_name(bus_name));
+  if (is_plain_log(options.record)) frame_log.emplace(*channels, options.record, interface_name(bus_name));
+  if (const RecordingSettings settings = recording_settings(cell, options); !settings.folder.empty())
+    recorder = std::make_unique<Recorder>(*channels, settings, interface_name(bus_name));
   model = std::jthread{[this](const std::stop_token& stop) { run_model(stop); }};
   RobotHandlers handlers;
   handlers.on_state = [this](const RobotState& state) {
@@ -120,14 +150,17 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
     if (pace.due(state)) newest_state.publish(state);
   };
   handlers.on_ack = [this](const CorrectionAck& ack) { (void)channels->messages.push(ack); };
-  handlers.on_path = [this](const RobotPath& path) { newest_path.publish(path); };
+  handlers.on_path = [this](const RobotPath& path) {
+    newest_path.publish(path);
+    if (recorder) recorder->add_path(path);
+  };
   handlers.on_bad = [](std::string_view channel, const char* why) { spdlog::warn("{}: {}", channel, why); };
   subscriber.emplace(lcm, realtime_ns, handlers);
 
   if (options.audit) audit.emplace();
   const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
   if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
-  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder.has_value(),
+  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder || frame_log,
                !options.allow_not_real_time);
   publisher.start();
   loop.emplace(real_time, [this] {
@@ -144,10 +177,12 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
 void LiveRun::Parts::run_model(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (newest_state.update()) {
-      if (const auto diagram = predictor.at(newest_state.value())) channels->lobes.publish(*diagram);
+      if (const auto diagram = predictor.at(newest_state.value()))
+        channels->lobes.publish({*diagram, recorder ? recorder->add_question(encode(predictor.answered()), false) : 0});
     }
     if (newest_path.update()) {
-      channels->ahead.publish(predictor.along(newest_path.value()));
+      const RobotPath& path = newest_path.value();
+      channels->ahead.publish({predictor.along(path), recorder ? recorder->add_question(encode(path), true) : 0});
     }
     std::this_thread::sleep_for(kPollModel);
   }
@@ -159,6 +194,7 @@ void LiveRun::Parts::stop() {
   stop_loop.store(true, std::memory_order_release);
   loop->join();
   publisher.finish();
+  if (frame_log) frame_log->finish();
   if (recorder) recorder->finish();
 }
 
@@ -173,8 +209,14 @@ std::uint64_t LiveRun::ticks() const { return parts_->channels->times.loop.ticks
 
 void LiveRun::stop() { parts_->stop(); }
 
+void LiveRun::mark(const std::string& why) {
+  if (parts_->recorder) parts_->recorder->mark(why);
+}
+
 nlohmann::ordered_json LiveRun::summary() const {
-  return summary_json(parts_->pipeline, *parts_->bus, *parts_->channels, parts_->publisher);
+  auto summary = summary_json(parts_->pipeline, *parts_->bus, *parts_->channels, parts_->publisher);
+  if (parts_->recorder) add_recording(summary, parts_->recorder->counters());
+  return summary;
 }
 
 TickTimes LiveRun::tick_times() const {

@@ -16,11 +16,14 @@
 namespace stillcut {
 
 struct LiveRunOptions {
-  std::string record;  // file for a plain candump log of what went into the core; empty: none
-  std::string events;  // file for the events as CSV; empty: none
-  int priority = 80;   // SCHED_FIFO
-  int cpu = -1;        // processor of the loop; -1: any
-  bool audit = false;  // end with status 134 at the loop's first forbidden system call
+  // FILE.log: a plain candump log of the frames that went into the core; else a recording's folder, in the place of the
+  // cell's own; empty: as the cell says.
+  std::string record;
+  bool cell_records = true;  // where the cell names a folder; false: only what `record` asks for
+  std::string events;        // file for the events as CSV; empty: none
+  int priority = 80;         // SCHED_FIFO
+  int cpu = -1;              // processor of the loop; -1: any
+  bool audit = false;        // end with status 134 at the loop's first forbidden system call
   // Active on a host that cannot keep time, and no release when the loop falls out of time: for the bench.
   bool allow_not_real_time = false;
   std::function<void(const Output&)>
@@ -44,6 +47,9 @@ class LiveRun {
 
   // Of the loop since its start: they go on as long as it lives.
   [[nodiscard]] std::uint64_t ticks() const;
+
+  // Keeps the seconds about now in the recording; nothing where none is made.
+  void mark(const std::string& why);
 
   // Ends the loop, publishes what is left and the release that every end owes the controller.
   void stop();

@@ -76,11 +76,7 @@ NominalPrediction Predictor::nominal() const {
 
 std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
   if (!computed_for_ || !same_question(*computed_for_, state, directions_asked_)) {
-    Posture posture;
-    posture.joints = state.joint_position;
-    posture.position = state.tcp_position;
-    const auto diagram = at_place(posture, state.feed_direction, state.milling, state.radial_depth,
-                                  rpm_to_rad_s(state.spindle_speed_rpm));
+    const auto diagram = again(state);
     if (!diagram) return std::nullopt;
     last_ = *diagram;
     computed_for_ = state;
@@ -88,6 +84,14 @@ std::optional<LobeDiagram> Predictor::at(const RobotState& state) {
   last_.posture_stamp_ns = state.stamp_ns;
   last_.usable_from_ns = state.stamp_ns + kUsableAfter_ns;
   return last_;
+}
+
+std::optional<LobeDiagram> Predictor::again(const RobotState& state) const {
+  Posture posture;
+  posture.joints = state.joint_position;
+  posture.position = state.tcp_position;
+  return at_place(posture, state.feed_direction, state.milling, state.radial_depth,
+                  rpm_to_rad_s(state.spindle_speed_rpm));
 }
 
 LobeDiagram Predictor::along(const RobotPath& path) const {

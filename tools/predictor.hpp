@@ -49,6 +49,13 @@ class Predictor {
   // same frame. Nothing when the state asks for what cannot be predicted (an immersion beyond the tool).
   [[nodiscard]] std::optional<LobeDiagram> at(const RobotState& state);
 
+  // The state that the last answer of at() was computed for: the newest, or an earlier one that asks the same.
+  [[nodiscard]] const RobotState& answered() const { return *computed_for_; }
+
+  // For exactly this state, whatever was asked before; without its times. A recording's diagrams are made again with
+  // it.
+  [[nodiscard]] std::optional<LobeDiagram> again(const RobotState& state) const;
+
   // For an announced path: at every speed the least limit of its points; an invalid diagram, which takes back what was
   // announced before, for a path without points or with one that cannot be predicted.
   [[nodiscard]] LobeDiagram along(const RobotPath& path) const;

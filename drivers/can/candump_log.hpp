@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/files/byte_source.hpp"
 #include "rt/can_frame.hpp"
 
 namespace stillcut {
@@ -50,8 +51,8 @@ class CandumpReader {
     whole       // all of the file is in memory when the constructor returns: next() then makes no system call
   };
 
-  // `interface`: deliver only its frames; empty: the frames of all interfaces.
-  // Throws InputError when the file cannot be read or holds not one valid frame.
+  // A name that ends in .zst is compressed (zstd). `interface`: deliver only its frames; empty: the frames of all
+  // interfaces. Throws InputError when the file cannot be read or holds not one valid frame.
   explicit CandumpReader(const std::filesystem::path& file, std::string interface = {}, Load load = Load::streaming);
   ~CandumpReader();
   CandumpReader(const CandumpReader&) = delete;
@@ -79,7 +80,7 @@ class CandumpReader {
   std::string only_interface_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  // unread part of the buffer
-  int descriptor_ = -1;
+  ByteSource source_;
   int read_error_ = 0;  // errno that ended the reading
   bool at_end_ = false;
   bool in_long_line_ = false;

@@ -1,8 +1,4 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <utility>
 
@@ -16,38 +12,33 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 CandumpReader::CandumpReader(const std::filesystem::path& file, std::string interface, Load load)
     : file_(file.string()), only_interface_(std::move(interface)), buffer_(kBufferBytes) {
-  descriptor_ = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) throw InputError(file_, 0, std::string("cannot be opened: ") + std::strerror(errno));
+  if (!source_.open(file))
+    throw InputError(file_, 0, std::string("cannot be opened: ") + std::strerror(source_.error()));
   if (load == Load::whole) load_whole();
   first_pending_ = next_frame(first_);
   if (first_pending_) return;
-  if (descriptor_ >= 0) ::close(descriptor_);  // no destructor runs for a constructor that throws
   if (read_error_ != 0) throw InputError(file_, 0, std::string("cannot be read: ") + std::strerror(read_error_));
   if (frames_ > 0) throw InputError(file_, 0, "no frame of interface '" + only_interface_ + "' in this log");
   throw InputError(file_, 0, "not one valid frame; a CAN log is what `candump -L` writes");
 }
 
-CandumpReader::~CandumpReader() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
+CandumpReader::~CandumpReader() = default;
 
 void CandumpReader::load_whole() {
   while (!at_end_) {
     if (end_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
     end_ += read_some(buffer_.data() + end_, buffer_.size() - end_);
   }
-  ::close(descriptor_);
-  descriptor_ = -1;
+  source_.close();
 }
 
 std::size_t CandumpReader::read_some(char* to, std::size_t bytes) noexcept {
-  ssize_t got = 0;
-  do {
-    got = ::read(descriptor_, to, bytes);
-  } while (got < 0 && errno == EINTR);
-  if (got < 0) read_error_ = errno;
-  if (got <= 0) at_end_ = true;
-  return got > 0 ? static_cast<std::size_t>(got) : 0;
+  const std::size_t got = source_.read(to, bytes);
+  if (got == 0) {
+    read_error_ = source_.error();
+    at_end_ = true;
+  }
+  return got;
 }
 
 // A line that does not fit the buffer is no frame whatever it holds: it comes in pieces, all but the last not complete.

@@ -59,6 +59,15 @@ struct CompensationSettings {
   double min_cutting_speed = 0.0, max_cutting_speed = kInfinity;  // m/s, the tool's window
 };
 
+// Where and how much the daemon records (tools/recorder.hpp).
+struct RecordingSettings {
+  std::filesystem::path folder;                        // absolute; empty: none
+  double segment_s = 60.0;                             // length of a segment
+  double keep_mib = 4096.0, keep_marked_mib = 4096.0;  // bounds of all segments; the oldest go first
+  double mark_before_s = 10.0, mark_after_s = 10.0;    // kept about a mark
+  bool only_marks = false;                             // nothing else is kept
+};
+
 struct Cell {
   std::filesystem::path file;  // as given on the command line
   // Sections that are absent stay empty: a command asks only for what it needs, through the require_* functions.
@@ -73,6 +82,7 @@ struct Cell {
   RuntimeMode mode = RuntimeMode::shadow;
   DetectionSettings detection;
   CompensationSettings compensation;
+  RecordingSettings recording;
 };
 
 // The files named in a cell that must be there. A command that needs fewer says so: `lobes` needs no CAN, and `replay`

@@ -26,4 +26,7 @@ DetectionSettings read_detection(TomlSection section);
 // Corrections (cell_compensation.cpp).
 CompensationSettings read_compensation(TomlSection section);
 
+// What is recorded (cell_recording.cpp).
+RecordingSettings read_recording(TomlSection section, const std::filesystem::path& folder);
+
 }  // namespace stillcut

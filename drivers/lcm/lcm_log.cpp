@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <sstream>
 
+#include "drivers/files/byte_source.hpp"
 #include "drivers/files/input_error.hpp"
 
 namespace stillcut {
@@ -18,16 +21,38 @@ std::int64_t big_endian(std::span<const std::uint8_t> bytes) {
   return static_cast<std::int64_t>(value);
 }
 
+void append_big_endian(std::string& to, std::int64_t value, int bytes) {
+  const auto bits = static_cast<std::uint64_t>(value);
+  for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) to.push_back(static_cast<char>(bits >> shift & 0xFF));
+}
+
 }  // namespace
+
+void append_lcm_event(std::string& log, std::int64_t number, std::int64_t stamp_ns, std::string_view channel,
+                      std::span<const std::uint8_t> data) {
+  log.append(kSyncWord.begin(), kSyncWord.end());
+  append_big_endian(log, number, 8);
+  append_big_endian(log, stamp_ns / 1000, 8);
+  append_big_endian(log, std::ssize(channel), 4);
+  append_big_endian(log, std::ssize(data), 4);
+  log.append(channel);
+  log.append(data.begin(), data.end());
+}
 
 LcmLogReader::LcmLogReader(const std::filesystem::path& file) {
   const auto fail = [&](const char* message) { throw InputError(file.string(), 0, message); };
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("no such file; check the path");
   if (!std::filesystem::is_regular_file(file, error)) fail("is no ordinary file; name a log of lcm-logger");
-  in_.open(file, std::ios::binary);
-  size_ = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-  if (!in_ || error) fail("cannot be opened; check its permissions");
+  if (is_compressed(file)) {
+    std::string content = read_whole(file);
+    size_ = std::ssize(content);
+    in_ = std::make_unique<std::istringstream>(std::move(content), std::ios::binary);
+  } else {
+    in_ = std::make_unique<std::ifstream>(file, std::ios::binary);
+    size_ = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
+  }
+  if (!*in_ || error) fail("cannot be opened; check its permissions");
   if (!next_event()) fail("holds no LCM event; name a log of lcm-logger");
   position_ = events_ = bad_ = 0;
 }
@@ -51,7 +76,7 @@ std::optional<RobotMessage> LcmLogReader::next() {
   return std::nullopt;
 }
 
-std::optional<LcmLogReader::LogEvent> LcmLogReader::next_event() {
+std::optional<LcmLogEvent> LcmLogReader::next_event() {
   bool in_damage = false;  // a damaged part is counted once, however long
   while (position_ < size_) {
     if (auto event = read_event_here()) {
@@ -67,7 +92,7 @@ std::optional<LcmLogReader::LogEvent> LcmLogReader::next_event() {
 
 // The event at position_, which then moves behind it; nothing when there is no whole one. What follows it must be the
 // next event or the file's end: a damaged length would otherwise swallow good events.
-std::optional<LcmLogReader::LogEvent> LcmLogReader::read_event_here() {
+std::optional<LcmLogEvent> LcmLogReader::read_event_here() {
   std::array<std::uint8_t, kHeaderBytes> header{};
   if (!read_at(position_, header) || !std::equal(kSyncWord.begin(), kSyncWord.end(), header.begin())) return {};
   const std::span<const std::uint8_t> fields(header);
@@ -80,12 +105,12 @@ std::optional<LcmLogReader::LogEvent> LcmLogReader::read_event_here() {
   std::array<std::uint8_t, kSyncWord.size()> following{};
   if (read_at(end, following) && following != kSyncWord) return {};
 
-  LogEvent event;
+  LcmLogEvent event;
   event.stamp_ns = time_us * 1000;
   MessageBytes channel(static_cast<std::size_t>(channel_length));
   if (!read_at(position_ + kHeaderBytes, channel)) return {};
   event.channel.assign(channel.begin(), channel.end());
-  if (event.channel == kRobotStateChannel || event.channel == kRobotAckChannel || event.channel == kRobotPathChannel) {
+  if (event.channel.starts_with("ROBOT_") || event.channel.starts_with("STILLCUT_")) {
     event.data.resize(static_cast<std::size_t>(data_length));
     if (!read_at(end - data_length, event.data)) return {};
   }
@@ -110,10 +135,10 @@ void LcmLogReader::skip_to_sync_word() {
 }
 
 bool LcmLogReader::read_at(std::int64_t position, std::span<std::uint8_t> bytes) {
-  in_.clear();
-  in_.seekg(position);
-  in_.read(reinterpret_cast<char*>(bytes.data()), std::ssize(bytes));
-  return in_.gcount() == std::ssize(bytes);
+  in_->clear();
+  in_->seekg(position);
+  in_->read(reinterpret_cast<char*>(bytes.data()), std::ssize(bytes));
+  return in_->gcount() == std::ssize(bytes);
 }
 
 }  // namespace stillcut

@@ -34,6 +34,7 @@ def parse_arguments(description):
     options.add_argument("--programs", type=pathlib.Path, required=True, help="folder of stillcut and stillcutd")
     options.add_argument("--cell", type=pathlib.Path, required=True, help="cell file whose folder is copied")
     options.add_argument("--log", type=pathlib.Path, help="candump log to play; default: a simulated cut")
+    options.add_argument("--seed", type=int, default=1, help="of what happens by chance")
     return options.parse_args()
 
 
@@ -41,6 +42,7 @@ class Folder:
     """A scratch folder with the programs, the guest's helpers, and a cell that listens to vcan0 as live.toml."""
 
     def __init__(self, options):
+        self.seed = options.seed
         self.examples = options.cell.resolve().parent.parent
         self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system."))
         for file in (options.programs / "stillcut", options.programs / "stillcutd", HERE / "guest.sh"):
@@ -78,8 +80,8 @@ class Folder:
         require(status == 0, f"stillcut {' '.join(words)} ended with {status}: {err}")
         return out
 
-    def in_guest(self, script, seconds=90):
-        status, out, err = self.run(HERE / "uml/run-in-uml", "-t", seconds, "--", "bash", "-c", ". ./guest.sh\n" + script)
+    def in_guest(self, script, seconds=90, options=()):
+        status, out, err = self.run(HERE / "uml/run-in-uml", "-t", seconds, *options, "--", "bash", "-c", ". ./guest.sh\n" + script)
         print(out, err, sep="", end="")
         require(status == 0, f"the run in the guest ended with {status}")
 
