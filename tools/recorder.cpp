@@ -148,7 +148,7 @@ void Recorder::write(const CanFrame& frame) {
   std::array<char, kMaxCandumpLine> line{};
   can_.append(line.data(), format_candump_line(frame, interface_, line));
   newest_ns_ = std::max(newest_ns_, frame.stamp_ns);
-  ++counters_.frames;
+  ++frames_held_;
 }
 
 void Recorder::write(const LobesUsed& used) {
@@ -207,6 +207,8 @@ void Recorder::flush(double now_s) {
   end_silence();
   note_lost();
   const bool good = folder_.write_can(can_) && folder_.write_lcm(lcm_) && folder_.flush(now_s);
+  (good ? counters_.frames : counters_.lost) += frames_held_;
+  frames_held_ = 0;
   can_.clear();
   lcm_.clear();
   if (!good) return stop_recording(now_s);

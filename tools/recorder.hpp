@@ -69,7 +69,8 @@ class Recorder {
   std::string interface_;
   RecordingFolder folder_;
   RecorderCounters counters_;
-  std::string can_, lcm_;  // not yet handed to the files
+  std::string can_, lcm_;         // not yet handed to the files
+  std::int64_t frames_held_ = 0;  // in can_
   std::optional<Silence> silence_;
   std::int64_t newest_ns_ = 0;  // data time
   std::int64_t lost_told_ = 0;

@@ -4,7 +4,7 @@ the last second at most.
 
 faults: 20 s in closed loop, in real time, with the shipped kinds of faults; faults_long: ten minutes of them. power_cut,
 power_cut_long: the daemon records on an ext4 disk in a guest that is killed at a random moment, twice, or twenty times
-(--seed N: other moments).
+(--seed N: other moments). full_disk: it fills while the daemon records, and is emptied.
 """
 import json
 import os
@@ -81,6 +81,38 @@ cp -r /run/disk/recording recovered && chmod -R a+rwX recovered
 """
 
 
+FULL_DISK = """
+mkdir /run/disk && mount -t tmpfs -o size=40m tmpfs /run/disk
+head -c 40600000 /dev/zero > /run/disk/filler
+record=/run/disk/recording start_daemon
+canplayer -l i -I cut.log "vcan0=$(awk '{print $2; exit}' cut.log)" > canplayer.out 2>&1 &
+until_true grep -q 'recording stopped' daemon.err
+sleep 1
+alive
+rm /run/disk/filler
+until_true grep -q 'recording goes on' daemon.err
+sleep 2
+stop_daemon
+cp -r /run/disk/recording recovered && chmod -R a+rwX recovered
+"""
+
+
+def full_disk(folder):
+    """It stops the recording, not the monitor, and says so once; with room it goes on in a new segment."""
+    folder.in_guest(FULL_DISK)
+    summary, said = folder.daemon_summary(), folder.text("daemon.err")
+    print("  ", summary)
+    require(said.count("recording stopped") == summary["record_stops"] == 1, "it is not said once")
+    require("No space left on device" in said, "why it stopped is not said")
+    require(summary["record_lost"] > 500, "what is lost is not counted")
+    require(summary["record_dropped"] == 0, "the loop's ring was left to fill")
+    segments = [json.loads(folder.stillcut("replay", "cell/live.toml", "--can", str(file), "--json"))["frames"]
+                for file in sorted((folder.path / "recovered").glob("*.can.log.zst"))]
+    print("   frames in the segments:", segments)
+    require(len(segments) == 2 and min(segments) > 0, "no new segment with frames")
+    require(sum(segments) < summary["frames"], "nothing is missing, so the disk was not full")
+
+
 def kill_guest(runner):
     """Ends the kernel that run-in-uml, process `runner`, has started, as a power cut would: all of it at once."""
     sessions = {}  # of the processes that run a kernel, by process: parent's session, own session
@@ -143,5 +175,5 @@ def power_cuts(times):
     return run
 
 
-main({"power_cut": power_cuts(2), "power_cut_long": power_cuts(20),
+main({"full_disk": full_disk, "power_cut": power_cuts(2), "power_cut_long": power_cuts(20),
       "faults": faults_of(20), "faults_long": faults_of(600)}, __doc__)

@@ -79,7 +79,7 @@ class DisturbedRun {
     settings.folder = folder;
     recorder_.emplace(*channels_, settings, "can0");
     pipeline_.core().add_lobes(predictor_.nominal().diagram);
-    loop_.emplace(bus_, pipeline_, *channels_, true, true, clock_of_the_run);
+    loop_.emplace(bus_, pipeline_, *channels_, true, true, true, clock_of_the_run);
   }
 
   // The frames of a log from the present on, in batches with what happens meanwhile.
@@ -147,7 +147,8 @@ class DisturbedRun {
   }
 
   void tick() {
-    loop_->tick();
+    awake_ns_ += chance(400) ? 40 * kMillisecond : kMillisecond;  // now and then the machine stands still
+    loop_->tick(awake_ns_);
     Output output;
     while (channels_->outputs.pop(output)) {
       recorder_->add_output(output);
@@ -166,7 +167,7 @@ class DisturbedRun {
   std::optional<LiveLoop> loop_;
   std::vector<RobotState> states_;
   std::vector<MessageBytes> decided_;
-  std::int64_t newest_ns_ = 0;
+  std::int64_t newest_ns_ = 0, awake_ns_ = kMillisecond;
 };
 
 TEST(Recording, GivesTheDecisionsOfADisturbedRunAgain) {
