@@ -21,9 +21,12 @@ PlaybackFiles playback_files(const std::string& can, const std::string& lcm) {
   } else {
     const bool name_of_none = !std::filesystem::is_directory(can, error) &&
                               !std::filesystem::is_directory(std::filesystem::path{can}.parent_path(), error);
-    if (name_of_none) return {.can = {can}, .lcm = {}};
+    if (name_of_none) return {.can = {can}, .lcm = {}, .note = {}};
     RecordedSegments found = find_segments(can);
-    files = {std::move(found.can), std::move(found.lcm), found.from_the_start};
+    files = {std::move(found.can), std::move(found.lcm), found.from_the_start, {}};
+    if (found.others > 0 && std::filesystem::is_directory(can, error))
+      files.note = can + ": the newest of " + std::to_string(found.others + 1) + " recordings, " + found.name +
+                   "; name another as FOLDER/NAME";
   }
   if (!lcm.empty()) files.lcm = {lcm};
   return files;

@@ -15,6 +15,7 @@ namespace stillcut {
 struct PlaybackFiles {
   std::vector<std::filesystem::path> can, lcm;
   bool from_the_start = true;  // false: the beginning of the recording was deleted
+  std::string note;            // one line for the user where there was a choice; empty: none
 };
 
 // `can`: a log, a recording's folder (its newest recording) or FOLDER/NAME; `lcm`: a log, or empty. Throws InputError.

@@ -75,7 +75,8 @@ RecordedSegments find_segments(const fs::path& place) {
   for (const std::string& stem : stems_in(folder)) stems[parse_stem(stem)->recording].push_back(stem);
   const auto found = is_folder && !stems.empty() ? std::prev(stems.end()) : stems.find(place.filename().string());
   if (found == stems.end())
-    throw InputError(place.string(), 0, "no recording is there; its files are NAME-000001.can.log.zst and so on");
+    throw InputError(place.string(), 0,
+                     "no log and no recording is there; a recording's files are NAME-000001.can.log.zst and so on");
   RecordedSegments segments;
   segments.name = found->first;
   segments.others = static_cast<int>(stems.size()) - 1;

@@ -83,7 +83,7 @@ cp -r /run/disk/recording recovered && chmod -R a+rwX recovered
 
 FULL_DISK = """
 mkdir /run/disk && mount -t tmpfs -o size=40m tmpfs /run/disk
-head -c 40600000 /dev/zero > /run/disk/filler
+head -c 41700000 /dev/zero > /run/disk/filler
 record=/run/disk/recording start_daemon
 canplayer -l i -I cut.log "vcan0=$(awk '{print $2; exit}' cut.log)" > canplayer.out 2>&1 &
 until_true grep -q 'recording stopped' daemon.err

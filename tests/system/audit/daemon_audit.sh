@@ -1,7 +1,7 @@
 #!/bin/bash
 # daemon_audit.sh PROGRAMS MALLOC_AUDIT CELL
 #
-# The audits on the real daemon: stillcutd plays a simulated cut with chatter for more than 10 000 ticks, once under the
+# The audits on the real daemon: stillcutd plays and records a simulated cut with chatter for more than 10 000 ticks, once under the
 # count of heap calls and locks on its loop thread, once with every system call but receive, sleep and clock forbidden.
 set -u
 programs=$1 malloc_audit=$2 cell=$3
@@ -17,9 +17,9 @@ printf '\n[lcm]\nurl = "memq://"\n' >> "$work/cell/live.toml"
   --depth 0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,9:3.6,9.1:0 > /dev/null || fail 'no cut to play'
 
 cd "$work"
-LD_PRELOAD=$malloc_audit "$programs/stillcutd" cell/live.toml --record heap.log --json > heap.json 2> heap.err &
+LD_PRELOAD=$malloc_audit "$programs/stillcutd" cell/live.toml --record heap --json > heap.json 2> heap.err &
 heap=$!
-"$programs/stillcutd" cell/live.toml --record calls.log --audit --json > calls.json 2> calls.err &
+"$programs/stillcutd" cell/live.toml --record calls --audit --json > calls.json 2> calls.err &
 calls=$!
 wait $heap || fail "heap and locks: status $?: $(tail -n 3 heap.err)"
 wait $calls || fail "system calls: status $?: $(tail -n 3 calls.err)"
