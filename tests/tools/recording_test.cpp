@@ -1,6 +1,6 @@
 // What the live loop recorded gives its decisions again, bit for bit: whatever comes late, at once or from a clock that
-// was set. The loop's own code on a bus and a clock of its own, without threads. It fails where a late message keeps its
-// stamp, and where diagrams or silences are left out of the recording (each tried).
+// was set. The loop's own code on a bus and a clock of its own, without threads. It fails where a late message keeps
+// its stamp, and where diagrams or silences are left out of the recording (each tried).
 #include <gtest/gtest.h>
 
 #include <array>
