@@ -171,6 +171,15 @@ class DisturbedRun {
   std::int64_t newest_ns_ = 0, awake_ns_ = kMillisecond;
 };
 
+// Events and corrections of a log of published messages, in their order.
+std::vector<MessageBytes> decisions_in(const std::filesystem::path& log) {
+  std::vector<MessageBytes> decisions;
+  LcmLogReader published{log};
+  while (const auto event = published.next_event())
+    if (event->channel == kEventChannel || event->channel == kCorrectionChannel) decisions.push_back(event->data);
+  return decisions;
+}
+
 TEST(Recording, GivesTheDecisionsOfADisturbedRunAgain) {
   const DemoCell files;
   files.simulate("4", "0:0,0.2:0,0.3:1.5,0.8:1.5,1.1:3.6,2.1:3.6,2.6:1.5,3.2:3.6,3.8:0");
@@ -186,10 +195,7 @@ TEST(Recording, GivesTheDecisionsOfADisturbedRunAgain) {
         {"stillcut", "replay", "cell.toml", "--can", folder.string(), "--publish", "file://again.lcm?mode=w", "--json"},
         files.path());
     ASSERT_EQ(done.exit_code, 0) << done.err;
-    std::vector<MessageBytes> again;
-    LcmLogReader published{files.path() / "again.lcm"};
-    while (const auto event = published.next_event())
-      if (event->channel == kEventChannel || event->channel == kCorrectionChannel) again.push_back(event->data);
+    const std::vector<MessageBytes> again = decisions_in(files.path() / "again.lcm");
     EXPECT_TRUE(again == run.decided()) << "seed " << seed << ": " << again.size() << " decided again, "
                                         << run.decided().size() << " live; " << done.out << done.err;
   }
@@ -208,10 +214,7 @@ TEST(Recording, WithoutTheRobotsPartDecidesOtherwise) {
                                        "--publish", "file://again.lcm?mode=w", "--json"},
                                       files.path());
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  std::vector<MessageBytes> again;
-  LcmLogReader published{files.path() / "again.lcm"};
-  while (const auto event = published.next_event())
-    if (event->channel == kEventChannel || event->channel == kCorrectionChannel) again.push_back(event->data);
+  const std::vector<MessageBytes> again = decisions_in(files.path() / "again.lcm");
   EXPECT_FALSE(again == run.decided());
 }
 
