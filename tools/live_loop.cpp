@@ -102,7 +102,8 @@ void LiveLoop::take_lobes(const LobesAnswer& answer) noexcept {
 }
 
 void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {
-  if (has_timing_ && timing_.stamp_ns <= stamp_ns) {
+  if (has_timing_ && frame_fed_) timing_.stamp_ns = std::max(timing_.stamp_ns, fed_ns_ + kMicrosecond_ns);
+  if (has_timing_ && frame_fed_ && timing_.stamp_ns <= stamp_ns) {  // before the first frame there is no time
     pipeline_.core().add_timing(timing_);
     record(timing_);
     has_timing_ = false;

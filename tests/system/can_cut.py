@@ -2,13 +2,14 @@
 """A cut on a real CAN bus: canplayer sends a log on vcan0, stillcutd decides, lcm-logger receives its messages over UDP.
 
 What the daemon decided live must equal, byte for byte, the playback of what it recorded; and match the playback of the
-original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz.
+original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz. A machine that keeps the guest waiting
+twice is not asked for the latter: to the daemon it is another cut, with samples missing, and that it must say.
 """
 import math
 import statistics
 
 import lcm_log
-from scenario import events_of, main, number, require, same_decisions
+from scenario import events_of, frames_of, kept_waiting, lateness, main, number, require, same_decisions
 
 RUN = """
 lcm-logger --quiet --force --lcm-url='udpm://239.255.76.67:7667?ttl=0' received.lcm > logger.out 2>&1 &
@@ -21,12 +22,6 @@ sleep 0.5
 kill -INT $logger
 wait $logger
 """
-
-
-def stamps(frames):
-    """Seconds since the first frame."""
-    seconds = [float(line[1:line.index(")")]) for line in frames]
-    return [s - seconds[0] for s in seconds]
 
 
 def same_story(live, original, late):
@@ -70,48 +65,50 @@ def as_the_contract_says(received, classes, events, start_us):
     require(corrections[-1].kind == 0, "the last message is no release")
 
 
-def lateness(frames, sent):
-    """Seconds by which each frame came later than the log says, seen from the first frame."""
-    return [a - b for a, b in zip(stamps(frames), stamps(sent))]
-
-
-def frames_of(folder, log):
-    return [line for line in folder.text(log).splitlines() if line.startswith("(")]
-
-
 def run_undisturbed(folder):
-    """Runs the cut in the guest; again, twice at most, where this machine kept the guest waiting for 40 ms or more."""
-    for _ in range(3):
+    """Runs the cut in the guest, again where this machine kept the guest waiting for 40 ms or more; whether it then did not."""
+    for _ in range(2):
         folder.in_guest(RUN)
-        late = lateness(frames_of(folder, "record.log"), frames_of(folder, "cut.log"))
-        stall = max(late) - statistics.median(late)
-        if stall < 0.04:  # from 50 ms on the daemon rightly calls the samples lost
-            return
-        print(f"   this machine kept the guest waiting for {1e3 * stall:.0f} ms")
-    require(False, "this machine is too busy for a test in real time")
+        if folder.daemon_summary()["kernel_dropped"] > 0:  # its buffer holds 0.4 s
+            print("   this machine kept the guest waiting until its kernel dropped frames")
+            continue
+        if not kept_waiting(folder, "cut.log"):
+            return True
+    return False
 
 
-def cut(folder):
-    run_undisturbed(folder)
-    events = same_decisions(folder)
-    for event in events:
-        print("  ", ", ".join(event.values()))
-    summary = folder.daemon_summary()
-    print("  ", summary)
-    require(summary["frames_lost"] == summary["frames_bad"] == summary["kernel_dropped"] == 0, "frames were lost")
+def same_as_sent(folder, events):
+    """Every frame was heard, and told the daemon what the original log tells a playback."""
     frames, sent = frames_of(folder, "record.log"), frames_of(folder, "cut.log")
     contents = lambda log: [line.split()[2].replace("##5", "##1") for line in log]  # kernels add the FDF flag, 4
     require(contents(frames) == contents(sent), f"{len(sent)} frames sent, {len(frames)} recorded, or not the same")
-
-    received = lcm_log.messages(folder.path / "received.lcm")
-    same_messages(received, lcm_log.messages(folder.path / "record.replay.lcm"))
-    start_us = round(1e6 * float(frames[0][1:frames[0].index(")")]))
-    as_the_contract_says(received, lcm_log.message_classes(folder.path / "types"), events, start_us)
     require(any(e["event"] == "chatter_onset" for e in events), "no chatter was found")
     original, _ = folder.replay("cut.log")
     late = statistics.median(lateness(frames, sent))
     print(f"   sent {1e3 * late:.2f} ms later than the first frame says")
     same_story(events, events_of(original), late)
+
+
+def cut(folder):
+    undisturbed = run_undisturbed(folder)
+    events = same_decisions(folder)
+    for event in events:
+        print("  ", ", ".join(event.values()))
+    summary = folder.daemon_summary()
+    print("  ", summary)
+    sent, frames = frames_of(folder, "cut.log"), frames_of(folder, "record.log")
+    require(summary["frames_bad"] == 0 and summary["frames"] == len(frames), "a frame is not recorded as it was heard")
+    require(len(frames) + summary["kernel_dropped"] == len(sent), f"{len(sent)} frames sent, {len(frames)} recorded")
+
+    received = lcm_log.messages(folder.path / "received.lcm")
+    same_messages(received, lcm_log.messages(folder.path / "record.replay.lcm"))
+    start_us = round(1e6 * float(frames[0][1:frames[0].index(")")]))
+    as_the_contract_says(received, lcm_log.message_classes(folder.path / "types"), events, start_us)
+    if undisturbed:
+        require(summary["frames_lost"] == 0, "frames were lost")
+        same_as_sent(folder, events)
+    else:  # late frames are another cut; live and playback still agree on it, and it is told
+        require(any(e["event"] == "fault" for e in events), "a monitor that could not keep time does not say so")
 
 
 main({"cut": cut}, __doc__)

@@ -11,6 +11,7 @@ import shutil
 from scenario import Failed, main, require
 
 STALL = 40  # ms: from 50 ms on the monitor rightly calls samples lost
+SILENT = "a monitor that could not keep time does not say so"
 
 TWO_PROCESSES = """
 start_daemon
@@ -34,7 +35,7 @@ def set_up(folder, examples):
     for name in ("demo-cell", "robot-cell"):
         cell = folder.path / "examples" / name / "cell.toml"
         text = re.sub(r'(?m)^bus = .*$', 'bus = "socketcan:vcan0"', cell.read_text())
-        text = re.sub(r"(?m)^sample_rate_hz = .*$", "sample_rate_hz = 10000", text)
+        text = re.sub(r"(?m)^sample_rate_hz = .*$", "sample_rate_hz = 5000", text)
         (cell.parent / "live.toml").write_text(text.replace('mode = "shadow"', 'mode = "active"'))
     shutil.copy(folder.path / "examples/demo-cell/live.toml", folder.path / "cell/live.toml")
     folder.run("chmod", "-R", "a+rwX", ".")
@@ -46,18 +47,19 @@ def score_of(folder, name):
     return score
 
 
-def unless_disturbed(attempt):
+def unless_disturbed(attempt, whatever_the_machine):
     """Runs attempt(scores), which appends its scores and checks them; what fails while this machine kept the plant waiting
-    is tried again."""
-    for last in (False, False, True):
+    is tried again. Where it does so twice, only what holds on any machine is judged, by whatever_the_machine(scores)."""
+    for last in (False, True):
         scores = []
         try:
             return attempt(scores)
-        except Failed:
+        except Failed as failure:
             behind = max((score["behind_ms"] for score in scores), default=0)
-            if last or behind < STALL:
+            if behind < STALL:
                 raise
-            print(f"   this machine kept the plant waiting for {behind:.0f} ms: once more")
+            print(f"   this machine kept the plant waiting for {behind:.0f} ms ({failure})", "" if last else ": once more")
+    whatever_the_machine(scores)
 
 
 def heard_and_corrected(score):
@@ -70,7 +72,7 @@ def heard_and_corrected(score):
 def local(folder):
     def attempt(scores):
         out = folder.stillcut("hil", "examples/demo-cell/cell.toml", "--scenario",
-                              "examples/scenarios/depth-step.toml", "--json")
+                              "examples/scenarios/depth-step.toml", "--events", "local.csv", "--json")
         print("  ", out.strip())
         score = json.loads(out)
         scores.append(score)
@@ -79,10 +81,13 @@ def local(folder):
         for tick in ("tick_p50_us", "tick_p9999_us", "tick_max_us"):
             require(score[tick] > 0, f"{tick} is missing")
 
-    unless_disturbed(attempt)
+    unless_disturbed(attempt, lambda scores: require(",fault," in folder.text("local.csv"), SILENT))
 
 
 def vcan(folder):
+    def says_so(_):
+        require(folder.daemon_summary()["faults"] > 0, SILENT)
+
     def attempt(scores):
         folder.in_guest(TWO_PROCESSES + ONE_PROCESS + """
             run stable-cut cell/live.toml
@@ -91,13 +96,14 @@ def vcan(folder):
         for name in ("plant.json", "stable-cut.json", "refusing-controller.json"):
             scores.append(score_of(folder, name))
         plant, stable, refused = scores
+        summary = folder.daemon_summary()
+        require(summary["kernel_dropped"] == 0, "the kernel dropped frames of the plant")
+        require(summary["frames"] == plant["frames_sent"], "not every frame of the plant was heard")
         heard_and_corrected(plant)
-        require(folder.daemon_summary()["kernel_dropped"] == 0, "the kernel dropped frames of the plant")
-        require(folder.daemon_summary()["frames"] == plant["frames_sent"], "not every frame of the plant was heard")
         require(stable["detected"] is None and stable["corrections"] == 0, "a stable cut was corrected")
         require(refused["detected"] is True and refused["corrections_refused"] >= 1, "nothing was refused")
 
-    unless_disturbed(attempt)
+    unless_disturbed(attempt, says_so)
 
 
 def every(folder):

@@ -3,9 +3,9 @@ set -u
 
 fail() { echo "guest: $*"; exit 1; }
 
-# Waits until COMMAND succeeds, half a minute at most.
+# Waits until COMMAND succeeds, a minute at most.
 until_true() {
-  for _ in {1..600}; do "$@" && return; sleep 0.05; done
+  for _ in {1..1200}; do "$@" && return; sleep 0.05; done
   fail "waited in vain for: $*"
 }
 

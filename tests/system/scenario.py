@@ -7,9 +7,11 @@ listeners left there.
 import argparse
 import csv
 import json
+import os
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,6 +19,7 @@ import tempfile
 # The simulated cut: air, entry, a sound cut, so deep that it chatters, exit (s:mm).
 DEPTH = "0:0,0.7:0,0.8:1.5,2:1.5,3:3.6,5.3:3.6,5.4:0"
 HERE = pathlib.Path(__file__).resolve().parent
+MEMORY = "/dev/shm"
 
 
 class Failed(Exception):
@@ -44,7 +47,8 @@ class Folder:
     def __init__(self, options):
         self.seed = options.seed
         self.examples = options.cell.resolve().parent.parent
-        self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system."))
+        # In memory: a busy disk would stop the guest's whole kernel at each write, for seconds.
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system.", dir=MEMORY if os.access(MEMORY, os.W_OK) else None))
         for file in (options.programs / "stillcut", options.programs / "stillcutd", HERE / "guest.sh"):
             shutil.copy(file, self.path)
         cell = self.path / "cell"
@@ -80,7 +84,7 @@ class Folder:
         require(status == 0, f"stillcut {' '.join(words)} ended with {status}: {err}")
         return out
 
-    def in_guest(self, script, seconds=90, options=()):
+    def in_guest(self, script, seconds=150, options=()):
         status, out, err = self.run(HERE / "uml/run-in-uml", "-t", seconds, *options, "--", "bash", "-c", ". ./guest.sh\n" + script)
         print(out, err, sep="", end="")
         require(status == 0, f"the run in the guest ended with {status}")
@@ -117,6 +121,30 @@ def same_decisions(folder):
     after = [e for e in events_of(live)[len(events):] if e["event"] != "fault"]
     require(not after, f"decided after the last frame: {after}")
     return events
+
+
+def frames_of(folder, log):
+    return [line for line in folder.text(log).splitlines() if line.startswith("(")]
+
+
+def stamps(frames):
+    """Seconds since the first frame."""
+    seconds = [float(line[1:line.index(")")]) for line in frames]
+    return [s - seconds[0] for s in seconds]
+
+
+def lateness(frames, sent):
+    """Seconds by which each frame came later than the log says, seen from the first frame."""
+    return [a - b for a, b in zip(stamps(frames), stamps(sent))]
+
+
+def kept_waiting(folder, sent):
+    """Whether this machine kept the guest waiting for 40 ms or more; from 50 ms on the daemon rightly calls samples lost."""
+    late = lateness(frames_of(folder, "record.log"), frames_of(folder, sent))
+    stall = max(late) - statistics.median(late)
+    if stall >= 0.04:
+        print(f"   this machine kept the guest waiting for {1e3 * stall:.0f} ms")
+    return stall >= 0.04
 
 
 def number(text):
