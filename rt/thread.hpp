@@ -1,5 +1,6 @@
 // Starts the real-time thread: fixed priority above ordinary work (SCHED_FIFO), optionally a processor of its own,
-// memory locked and stack touched beforehand, so that no page fault meets the loop. What this host does not
+// memory locked and stack touched beforehand, so that no page fault meets the loop, and processors kept from deep sleep
+// while it lives (where the host has /dev/cpu_dma_latency and lets it be written). What this host does not
 // permit is left out and reported, never an error: in shadow mode a late tick harms nobody. Whether a
 // report is good enough for active mode is the caller's decision.
 #pragma once
@@ -53,6 +54,7 @@ class RealTimeThread {
   RealTimeReport report_;
   pthread_t thread_{};
   bool joinable_ = false;
+  int awake_device_ = -1;
 };
 
 }  // namespace stillcut
