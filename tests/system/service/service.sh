@@ -5,10 +5,10 @@
 # purges (nothing may be left), installs again, and boots the folder in User-mode Linux with systemd as process 1, where
 # guest-test plays on. Needs root, as every installation does. BUILD/packages has the packages, from packages.sh.
 # long: there also with a wrong cell file, a missing interface, and a purge while the service runs.
-# The folder without the package is kept as BUILD/service-root.tar: making it takes half a minute.
 set -eu
 build=$1 hang_loop=$2
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
+. "$here/root_folder.sh"
 fail() { echo "service: $*" >&2; exit 1; }
 if [ "$(id -u)" != 0 ]; then exec sudo -n "$0" "$@"; fi
 package=$(ls "$build"/packages/stillcut_*.deb) older=$(ls "$build"/packages/older/stillcut_*.deb)
@@ -18,15 +18,7 @@ root=$work/root
 trap 'rm -rf "$work"' EXIT
 mkdir "$root" "$work/umid"
 
-# What the package depends on comes with the folder, so that it is made once.
-depends=$(dpkg-deb -f "$package" Depends | sed 's/([^)]*)//g; s/|[^,]*//g; s/ //g')
-include=systemd,systemd-sysv,udev,dbus,kmod,procps,can-utils,python3-minimal,libpython3-stdlib,$depends
-if [ "$(cat "$build/service-root.list" 2> /dev/null)" != "$include" ]; then
-  mmdebstrap --quiet --variant=minbase --include="$include" bookworm "$build/service-root.tar"
-  echo "$include" > "$build/service-root.list"
-fi
-tar -x -C "$root" --exclude './dev/*' -f "$build/service-root.tar"
-mknod -m 666 "$root/dev/null" c 1 3
+unpack_root "$build" "$package" "$root"
 
 in_root() { LC_ALL=C DEBIAN_FRONTEND=noninteractive chroot "$root" "$@" > "$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; fail "$*"; }; }
 # Contents too; what dpkg and the account files keep for themselves left out.
@@ -50,18 +42,10 @@ echo "install, upgrade, remove, purge: nothing is left"
 in_root dpkg -i "/$(basename "$package")"
 rm "$root"/*.deb
 
-# A guest: this kernel's modules, no consoles and timers, the test and its helpers.
+# A guest: this kernel's modules, the test and its helpers.
 mkdir -p "$root/usr/lib/modules" "$root/test/classes"
 cp -a "/usr/lib/uml/modules/$kernel" "$root/usr/lib/modules/$kernel"
-units=$root/etc/systemd/system
-for unit in getty.target getty@tty1.service console-getty.service systemd-timesyncd.service apt-daily.timer apt-daily-upgrade.timer \
-  e2scrub_all.timer e2scrub_reap.service fstrim.timer dpkg-db-backup.timer systemd-pstore.service systemd-networkd.service; do
-  ln -sf /dev/null "$units/$unit"
-done
-rm -rf "$units"/getty.target.wants
-: > "$root/etc/fstab"
-echo guest > "$root/etc/hostname"
-install -m 644 "$here"/test.{service,target} "$units"
+make_bootable "$root" "$here"/test.{service,target}
 install -m 644 "$here"/{guest-test,controller.py,scenario.toml} "$here/../adapter_peer.py" "$hang_loop" "$root/test"
 [ "${3:-}" != long ] || touch "$root/test/long"
 lcm-gen --python --ppath "$root/test/classes" "$here"/../../../drivers/lcm/*.lcm

@@ -186,6 +186,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "Usage: day_of_cutting HOURS FOLDER  (a cell.toml and its cut.log; at least 3 hours)\n");
     return 2;
   }
-  spdlog::set_level(spdlog::level::warn);
+  spdlog::set_level(spdlog::level::err);
   return stillcut::day(argv[2], std::atoi(argv[1]));
 }
