@@ -1,6 +1,6 @@
 // The commands of `stillcut`: each add_*_command (in command_NAME.cpp) adds one subcommand to the application. A
 // command throws InputError for bad input (exit 3) and ComponentError for a missing component (exit 4);
-// run_command_line turns them into the one line and the exit code that contracts promise.
+// run_command_line (run_command_line.cpp) turns them into the one line and the exit code that contracts promise.
 #pragma once
 
 #include <CLI/CLI.hpp>
