@@ -36,10 +36,13 @@ struct LobesAnswer {
 };
 
 struct LoopChannels {
+  // recorded_too: whether somebody takes what goes into the core; its ring is most of the memory here.
+  explicit LoopChannels(bool recorded_too = true) : recorded{recorded_too ? std::size_t{32768} : std::size_t{1}} {}
+
   Snapshot<LobesAnswer> lobes, ahead;  // of the present posture, along the announced path
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
-  Ring<CoreInput> recorded{32768};         // ten seconds of a triaxial 25.6 kHz sensor
+  Ring<CoreInput> recorded;                // ten seconds of a triaxial 25.6 kHz sensor
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
   LoopTimes times;
 };

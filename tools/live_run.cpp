@@ -87,6 +87,10 @@ RecordingSettings recording_settings(const Cell& cell, const LiveRunOptions& opt
   return settings;
 }
 
+bool records(const Cell& cell, const LiveRunOptions& options) {
+  return is_plain_log(options.record) || !recording_settings(cell, options).folder.empty();
+}
+
 void add_recording(nlohmann::ordered_json& summary, const RecorderCounters& recorded) {
   summary["recorded_frames"] = recorded.frames;
   summary["recorded_messages"] = recorded.messages;
@@ -112,7 +116,7 @@ struct LiveRun::Parts {
   Pipeline pipeline;
   Predictor predictor;
   std::unique_ptr<CanBus> bus;
-  std::unique_ptr<LoopChannels> channels = std::make_unique<LoopChannels>();
+  std::unique_ptr<LoopChannels> channels;
   PublisherThread publisher;
   std::optional<FrameLogThread> frame_log;
   std::unique_ptr<Recorder> recorder;
@@ -132,6 +136,7 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
                       const LiveRunOptions& options)
     : pipeline{cell},
       predictor{cell},
+      channels{std::make_unique<LoopChannels>(records(cell, options))},
       publisher{*channels, lcm, options.events, cell.mode, [this, on_output = options.on_output](const Output& output) {
                   if (recorder) recorder->add_output(output);
                   if (on_output) on_output(output);
@@ -160,7 +165,7 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   if (options.audit) audit.emplace();
   const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
   if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
-  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), recorder || frame_log,
+  live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), records(cell, options),
                !options.allow_not_real_time);
   publisher.start();
   loop.emplace(real_time, [this] {
