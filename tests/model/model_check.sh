@@ -28,9 +28,9 @@ if [ "$wanted" = rejected ]; then
   grep -E '^pan:[0-9]+:' report | grep -Eq -- "$regex" || fail "an error was found, but not: $regex"
   exit 0
 fi
+found 'errors: 0' || fail "the model is wrong"
 found 'max search depth too small|[Ss]earch not completed|reached -DMEMLIM|out of memory' && fail "the search is incomplete"
 found "^Full statespace search for" || fail "not the whole state space was searched"
 found "$regex.*[+]" || fail "not searched for: $regex"
-found 'errors: 0' || fail "the model is wrong"
 sed -n '/^unreached in/,$p' report | grep -E 'state [0-9]+' | grep -v D_STEP && fail "these statements were never reached"
 exit 0
