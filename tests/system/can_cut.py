@@ -2,7 +2,8 @@
 """A cut on a real CAN bus: canplayer sends a log on vcan0, stillcutd decides, lcm-logger receives its messages over UDP.
 
 What the daemon decided live must equal, byte for byte, the playback of what it recorded; and match the playback of the
-original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz.
+original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz. audit: the same, with every audit of
+the real-time loop on it.
 """
 import math
 import statistics
@@ -114,4 +115,13 @@ def cut(folder):
     same_story(events, events_of(original), late)
 
 
-main({"cut": cut}, __doc__)
+def audit(folder):
+    """What the loop must not do ends the daemon with another status, whether or not this machine kept it waiting."""
+    folder.in_guest(RUN.replace("start_daemon", "preload=$PWD/libloop_audit.so start_daemon --audit"))
+    said = [line for line in folder.text("daemon.err").splitlines() if line.startswith("loop_audit")]
+    print("  ", *said)
+    require(len(said) == 1, "the loop was not audited")
+    require(any(e["event"] == "chatter_onset" for e in events_of(folder.text("live.csv"))), "no chatter was found")
+
+
+main({"cut": cut, "audit": audit}, __doc__)
