@@ -2,7 +2,8 @@
 // memory locked and stack touched beforehand, so that no page fault meets the loop, and processors kept from deep sleep
 // while it lives (where the host has /dev/cpu_dma_latency and lets it be written). What this host does not
 // permit is left out and reported, never an error: in shadow mode a late tick harms nobody. Whether a
-// report is good enough for active mode is the caller's decision.
+// report is good enough for active mode is the caller's decision. Where memory cannot be locked, the program is brought
+// in all the same.
 #pragma once
 
 #include <pthread.h>
@@ -12,8 +13,8 @@
 
 namespace stillcut {
 
-// While a thread bears this name it must neither allocate, lock, nor call the system beyond receive, sleep and clock:
-// the audit (tests/system/audit) counts on threads of this name only.
+// While a thread bears this name it must neither allocate, lock, fault, nor call the system beyond receive, sleep and
+// clock: the audit (tests/system/audit) counts on threads of this name only.
 inline constexpr const char* kLoopThreadName = "stillcut-loop";
 
 struct RealTimeSettings {

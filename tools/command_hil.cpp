@@ -32,7 +32,7 @@ constexpr std::chrono::milliseconds kLastWords{200};            // for what is s
 
 struct HilOptions {
   std::string cell, scenario, plot, events, record;
-  bool shadow = false, json = false, data_time = false, live = false, compare = false;
+  bool shadow = false, json = false, data_time = false, live = false, compare = false, audit = false;
 };
 
 struct HilRun {
@@ -112,14 +112,14 @@ void say_late(const PlantReport& plant) {
 
 // Daemon and machine in this process, in real time. They meet on a bus and an LCM network of their own, so that nothing
 // else is needed and nothing real moves, unless the user wants those of the cell.
-HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std::string& record,
+HilRun run_live(const Cell& cell, const Scenario& scenario, const HilOptions& wanted,
                 const std::function<void(double)>& progress) {
   const std::string own_bus = "local:stillcut-hil-" + std::to_string(getpid());
-  const std::string bus_name = live ? cell.can->bus : own_bus;
+  const std::string bus_name = wanted.live ? cell.can->bus : own_bus;
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("stillcut", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   spdlog::set_level(spdlog::level::err);
-  const LcmConnection lcm = open_lcm(live ? cell.lcm_url : "memq://");
+  const LcmConnection lcm = open_lcm(wanted.live ? cell.lcm_url : "memq://");
   const std::unique_ptr<CanBus> bus = open_can_bus(bus_name);
   MonitorInbox inbox;
   const MonitorListener listener{lcm,
@@ -127,8 +127,9 @@ HilRun run_live(const Cell& cell, const Scenario& scenario, bool live, const std
                                  MonitorListener::Thread::none};
   LiveRunOptions options;
   options.allow_not_real_time = true;  // the machine is a simulated one
-  options.record = record;
-  options.cell_records = live;
+  options.record = wanted.record;
+  options.cell_records = wanted.live;
+  options.audit = wanted.audit;
   options.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
     if (output.type != Output::Type::correction) inbox.add(output);
   };
@@ -203,6 +204,9 @@ void hil(const HilOptions& options) {
     throw CLI::ValidationError("--live", "--data-time has neither bus nor LCM; leave one of the two out");
   if (!options.record.empty() && (options.data_time || options.compare))
     throw CLI::ValidationError("--record", "records a run in real time; leave --data-time and --compare out");
+  if (options.audit && (options.data_time || options.compare))
+    throw CLI::ValidationError("--audit",
+                               "watches the loop of a run in real time; leave --data-time and --compare out");
   check_outputs(options);
   Cell cell = read_cell(options.cell, {.bus = options.live});
   if (options.live) check_can_send(cell);
@@ -211,8 +215,8 @@ void hil(const HilOptions& options) {
   if (options.compare) return compare(options, cell, scenario);
   Progress progress{"running"};
   const auto show = [&](double share) { progress.update(share); };
-  const HilRun run = options.data_time ? run_without_clock(cell, scenario, show)
-                                       : run_live(cell, scenario, options.live, options.record, show);
+  const HilRun run =
+      options.data_time ? run_without_clock(cell, scenario, show) : run_live(cell, scenario, options, show);
   progress.finish();
   report(options, cell, scenario, run);
 }
@@ -258,6 +262,8 @@ void add_hil_command(CLI::App& app) {
   command->add_flag("--compare", options->compare,
                     "the cut not corrected, corrected, and at a depth that is sound as programmed (data time)");
   command->add_option("--record", options->record, "record as stillcutd does, FILE.log or a folder (not in data time)");
+  command->add_flag("--audit", options->audit,
+                    "abort (status 134) at the loop's first system call but receive, sleep and clock");
   command->add_flag("--live", options->live,
                     "on the bus and the LCM network that the cell names (default: on private ones)");
   command->footer(

@@ -4,6 +4,7 @@
 What the daemon decided live must equal, byte for byte, the playback of what it recorded; and match the playback of the
 original log, whose frames carry other stamps, in order and kind, to 5 ms and 0.5 Hz. A machine that keeps the guest waiting
 twice is not asked for the latter: to the daemon it is another cut, with samples missing, and that it must say.
+audit: the cut alone, with every audit of the real-time loop on it.
 """
 import math
 import statistics
@@ -89,6 +90,7 @@ def same_as_sent(folder, events):
     same_story(events, events_of(original), late)
 
 
+<<<<<<< HEAD
 def cut(folder):
     undisturbed = run_undisturbed(folder)
     events = same_decisions(folder)
@@ -112,3 +114,15 @@ def cut(folder):
 
 
 main({"cut": cut}, __doc__)
+=======
+def audit(folder):
+    """What the loop must not do ends the daemon with another status, whether or not this machine kept it waiting."""
+    folder.in_guest(RUN.replace("start_daemon", "preload=$PWD/libloop_audit.so start_daemon --audit"))
+    said = [line for line in folder.text("daemon.err").splitlines() if line.startswith("loop_audit")]
+    print("  ", *said)
+    require(len(said) == 1, "the loop was not audited")
+    require(any(e["event"] == "chatter_onset" for e in events_of(folder.text("live.csv"))), "no chatter was found")
+
+
+main({"cut": cut, "audit": audit}, __doc__)
+>>>>>>> audits

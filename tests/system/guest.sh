@@ -11,10 +11,11 @@ until_true() {
 
 listening() { grep -qs '^ *vcan0 ' /proc/net/can/rcvlist_{all,fil,sff,eff,inv}; }
 
-# start_daemon [OPTION...]: stillcutd on vcan0, recording to $record (record.log), events to live.csv; returns when its socket
-# listens. The guest's one slow processor keeps no time, which is not asked of it here.
+# start_daemon [OPTION...]: stillcutd on vcan0, recording to $record (record.log), events to live.csv, with the library $preload,
+# if that is set; returns when its socket listens. The guest's one slow processor keeps no time, which is not asked of it here.
 start_daemon() {
-  ./stillcutd cell/live.toml --allow-not-real-time --record "${record:-record.log}" --events live.csv --json "$@" \
+  env ${preload:+LD_PRELOAD="$preload"} \
+    ./stillcutd cell/live.toml --allow-not-real-time --record "${record:-record.log}" --events live.csv --json "$@" \
     > daemon.out 2> daemon.err &
   daemon=$!
   until_true listening

@@ -37,6 +37,7 @@ def parse_arguments(description):
     options.add_argument("--programs", type=pathlib.Path, required=True, help="folder of stillcut and stillcutd")
     options.add_argument("--cell", type=pathlib.Path, required=True, help="cell file whose folder is copied")
     options.add_argument("--log", type=pathlib.Path, help="candump log to play; default: a simulated cut")
+    options.add_argument("--loop-audit", type=pathlib.Path, help="libloop_audit.so, to watch the daemon's loop with")
     options.add_argument("--seed", type=int, default=1, help="of what happens by chance")
     return options.parse_args()
 
@@ -51,6 +52,8 @@ class Folder:
         self.path = pathlib.Path(tempfile.mkdtemp(prefix="stillcut-system.", dir=MEMORY if os.access(MEMORY, os.W_OK) else None))
         for file in (options.programs / "stillcut", options.programs / "stillcutd", HERE / "guest.sh"):
             shutil.copy(file, self.path)
+        if options.loop_audit:
+            shutil.copy(options.loop_audit, self.path)
         cell = self.path / "cell"
         shutil.copytree(options.cell.parent, cell)
         text = (cell / options.cell.name).read_text()

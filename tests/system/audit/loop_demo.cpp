@@ -1,13 +1,17 @@
 // A real-time loop on the project's own primitives, to prove the audits on: it pushes into a ring, reads a snapshot and
 // steps a trajectory at 10 kHz, and can be told to misbehave once, in the middle of the run.
 //
-//   audit_demo [--ticks N] [--filter] [--plant malloc|free|lock|read_lock|syscall|sleep]
+//   audit_demo [--ticks N] [--filter]
+//              [--plant malloc|free|lock|try_lock|read_lock|notify|semaphore|static|touch|syscall|sleep]
 #include <pthread.h>
+#include <semaphore.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -32,13 +36,35 @@ constexpr std::int64_t kPeriodNs = 100'000;
 
 std::mutex mutex;
 std::shared_mutex shared_mutex;
+std::condition_variable condition;
+sem_t semaphore;
 void* volatile block = nullptr;  // volatile: a pair of malloc and free that nobody looks at would be compiled away
+
+std::atomic<volatile char*> fresh{nullptr};  // a page that is not there yet
+
+// Memory is locked for good, so a page has to be taken away to be missing.
+void take_a_page_away() {
+  void* page = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  munlock(page, 4096);
+  madvise(page, 4096, MADV_DONTNEED);
+  fresh.store(static_cast<char*>(page), std::memory_order_release);
+}
+
+std::int64_t first_use() {
+  static const std::int64_t once = monotonic_ns();
+  return once;
+}
 
 void misbehave(const std::string& how) {
   if (how == "malloc") block = std::malloc(64);
   if (how == "free") std::free(block);
   if (how == "lock") std::lock_guard guard{mutex};
+  if (how == "try_lock" && mutex.try_lock()) mutex.unlock();
   if (how == "read_lock") std::shared_lock guard{shared_mutex};
+  if (how == "notify") condition.notify_one();
+  if (how == "semaphore") sem_post(&semaphore);
+  if (how == "static") (void)first_use();
+  if (how == "touch") *fresh.load(std::memory_order_acquire) = 1;
   if (how == "syscall") syscall(SYS_getppid);
   if (how == "sleep") std::this_thread::sleep_for(std::chrono::nanoseconds(1));
 }
@@ -55,6 +81,7 @@ int main(int count, char** arguments) {
     if (option == "--ticks" && i + 1 < count) ticks = std::strtoull(arguments[++i], nullptr, 10);
     if (option == "--plant" && i + 1 < count) plant = arguments[++i];
   }
+  sem_init(&semaphore, 0, 0);
   if (plant == "free") block = std::malloc(64);
 
   Ring<MotionState> out{1024};
@@ -85,6 +112,7 @@ int main(int count, char** arguments) {
                           ended.store(true, std::memory_order_release);
                         }};
 
+  if (plant == "touch") take_a_page_away();
   MotionState state;
   for (double speed = 1000.0; !ended.load(std::memory_order_acquire); speed = 4000.0 - speed) {
     target.publish(speed);
