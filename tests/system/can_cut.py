@@ -90,7 +90,6 @@ def same_as_sent(folder, events):
     same_story(events, events_of(original), late)
 
 
-<<<<<<< HEAD
 def cut(folder):
     undisturbed = run_undisturbed(folder)
     events = same_decisions(folder)
@@ -98,9 +97,8 @@ def cut(folder):
         print("  ", ", ".join(event.values()))
     summary = folder.daemon_summary()
     print("  ", summary)
-    sent, frames = frames_of(folder, "cut.log"), frames_of(folder, "record.log")
+    frames = frames_of(folder, "record.log")
     require(summary["frames_bad"] == 0 and summary["frames"] == len(frames), "a frame is not recorded as it was heard")
-    require(len(frames) + summary["kernel_dropped"] == len(sent), f"{len(sent)} frames sent, {len(frames)} recorded")
 
     received = lcm_log.messages(folder.path / "received.lcm")
     same_messages(received, lcm_log.messages(folder.path / "record.replay.lcm"))
@@ -113,16 +111,14 @@ def cut(folder):
         require(any(e["event"] == "fault" for e in events), "a monitor that could not keep time does not say so")
 
 
-main({"cut": cut}, __doc__)
-=======
 def audit(folder):
     """What the loop must not do ends the daemon with another status, whether or not this machine kept it waiting."""
     folder.in_guest(RUN.replace("start_daemon", "preload=$PWD/libloop_audit.so start_daemon --audit"))
     said = [line for line in folder.text("daemon.err").splitlines() if line.startswith("loop_audit")]
     print("  ", *said)
     require(len(said) == 1, "the loop was not audited")
-    require(any(e["event"] == "chatter_onset" for e in events_of(folder.text("live.csv"))), "no chatter was found")
+    found = {e["event"] for e in events_of(folder.text("live.csv"))}
+    require("chatter_onset" in found or kept_waiting(folder, "cut.log"), "no chatter was found: the loop went half its way")
 
 
 main({"cut": cut, "audit": audit}, __doc__)
->>>>>>> audits
