@@ -69,11 +69,12 @@ int keep_processors_awake() noexcept {
 void populate_program() {
   std::ifstream maps{"/proc/self/maps"};
   for (std::string line; std::getline(maps, line);) {
-    unsigned long begin = 0, end = 0;
+    void *begin = nullptr, *end = nullptr;
     char access[5] = {};
-    if (std::sscanf(line.c_str(), "%lx-%lx %4s", &begin, &end, access) != 3) continue;
+    if (std::sscanf(line.c_str(), "%p-%p %4s", &begin, &end, access) != 3) continue;
     if (line.find('/') == std::string::npos || access[0] != 'r' || access[3] != 'p') continue;  // no file of its own
-    madvise(reinterpret_cast<void*>(begin), end - begin, access[1] == 'w' ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
+    const auto length = static_cast<std::size_t>(static_cast<std::byte*>(end) - static_cast<std::byte*>(begin));
+    madvise(begin, length, access[1] == 'w' ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
   }
 }
 
