@@ -144,7 +144,10 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   const NominalPrediction prediction = predictor.nominal();
   if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
   pipeline.core().add_lobes(prediction.diagram);
-  bus = open_can_bus(bus_name, pipeline.decoder().ids_used());  // last, so that no frame waits for the prediction
+  const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
+  if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
+  // After what takes time: no frame waits for it, and where real time is refused no recording is begun.
+  bus = open_can_bus(bus_name, pipeline.decoder().ids_used());
   if (is_plain_log(options.record)) frame_log.emplace(*channels, options.record, interface_name(bus_name));
   if (const RecordingSettings settings = recording_settings(cell, options); !settings.folder.empty())
     recorder = std::make_unique<Recorder>(*channels, settings, interface_name(bus_name));
@@ -163,8 +166,6 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   subscriber.emplace(lcm, realtime_ns, handlers);
 
   if (options.audit) audit.emplace();
-  const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
-  if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
   live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), records(cell, options),
                !options.allow_not_real_time);
   publisher.start();

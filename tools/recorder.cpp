@@ -225,8 +225,8 @@ void Recorder::begin(double now_s) {
 }
 
 void Recorder::stop_recording(double now_s) {
+  folder_.close(now_s);  // and with it what its files were refused
   const int error = folder_.error();
-  folder_.close(now_s);
   silence_.reset();
   ++counters_.stops;
   ++counters_.lost;  // at least
