@@ -52,7 +52,7 @@ lcm-gen --python --ppath "$root/test/classes" "$here"/../../../drivers/lcm/*.lcm
 
 memory=/dev/shm
 [ -d $memory ] && [ -w $memory ] || memory=/tmp
-TMPDIR=$memory timeout -k 5 240 /usr/bin/linux.uml mem=768M root=/dev/root rootfstype=hostfs rootflags="$root" rw loglevel=1 \
+TMPDIR=$memory timeout -k 5 540 /usr/bin/linux.uml mem=768M root=/dev/root rootfstype=hostfs rootflags="$root" rw loglevel=1 \
   uml_dir="$work/umid" init=/sbin/init systemd.unit=test.target systemd.show_status=0 con=null con0=fd:0,fd:1 \
   < /dev/null 2> "$work/kernel" | tr -d '\r' || true
 [ -s "$root/test/verdict" ] || { tail -n 5 "$work/kernel" >&2; fail 'the guest reported no verdict'; }
