@@ -9,6 +9,7 @@ set(CMAKE_SYSROOT ${STILLCUT_SYSROOT})
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)  # no notes that calls were other ones before GCC 10
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static -L ${STILLCUT_SYSROOT})
 
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
