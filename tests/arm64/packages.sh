@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 
 rm -rf "$arm64/packages"
 "$source/tools/package" --arch arm64
-[ -e "$build/packages" ] || "$source/tools/package"
+"$source/tools/package"  # of the same state of the tree
 lintian --allow-root --fail-on error "$arm64"/packages/*.deb || fail "lintian ended with $?"
 
 here=$(ls "$build"/packages/stillcut_*.deb) there=$(ls "$arm64"/packages/stillcut_*.deb)
@@ -29,9 +29,10 @@ depends() { dpkg-deb -f "$1" Depends | tr -d ' ' | tr , '\n' | sed 's/(.*//' | s
 diff <(depends "$here") <(depends "$there") || fail 'the packages depend on different packages'
 
 # Nothing of this machine's own headers went in: what the compiler read is the source, the root folder, or its own.
-strange=$(ninja -C "$arm64" -t deps | sed -n 's/^    //p' | grep '^/' | grep -vE "^($(realpath "$source")|/usr/lib/gcc-cross|/usr/aarch64-linux-gnu)/" | sort -u | head -n 3)
-[ -z "$strange" ] || fail "compiled with headers of this machine: $strange"
-
+headers=$(ninja -C "$arm64" -t deps | sed -n 's/^    //p' | sort -u)
+grep -q '^sysroot/' <<< "$headers" || fail 'no header of the root folder was read: is build-arm64 built?'
+strange=$(grep '^/' <<< "$headers" | grep -vE "^($(realpath "$source")|/usr/lib/gcc-cross|/usr/aarch64-linux-gnu)/") || true
+[ -z "$strange" ] || fail "compiled with headers of this machine: $(head -n 3 <<< "$strange")"
 # What decides works in single operations: a fused multiply-add would round otherwise than on this machine.
 for room in dsp rt; do
   fused=$(aarch64-linux-gnu-objdump -d "$arm64/$room/libstillcut_$room.a" | grep -cE '\sf(n?madd|n?msub|mla|mls)\s') || true
