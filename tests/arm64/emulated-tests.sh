@@ -13,6 +13,6 @@ for test in ${pattern//|/ }; do
   grep -qxE "$test" "$names" || { echo "emulated-tests: not-emulated.txt names '$test', which is no test" >&2; exit 1; }
 done
 echo "emulated-tests: $(grep -c . "$names") tests, $(grep -cxE "$pattern" "$names") of them left out"
-ctest --test-dir "$arm64" --output-on-failure --no-tests=error --timeout 900 -LE 'system|long' -E "^($pattern)\$" "$@" |
+ctest --test-dir "$arm64" --output-on-failure --no-tests=error --timeout 3600 -LE 'system|long' -E "^($pattern)\$" "$@" |
   tee "$arm64/emulated-tests.log"
 ! grep -qE 'did not run|\(Not Run\)|\*\*\*Skipped' "$arm64/emulated-tests.log"

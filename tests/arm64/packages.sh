@@ -1,7 +1,8 @@
 #!/bin/bash
 # packages.sh SOURCE BUILD BUILD-ARM64: tools/package --arch arm64 makes packages that lintian finds no error in, that hold
 # arm64 programs made from arm64 libraries alone, and that differ from the packages in BUILD/packages in nothing else:
-# manual pages, completion, units, documents are the same, and so are the names of the packages they depend on.
+# manual pages, completion, units, documents are the same, and so are the names of the packages they depend on. Debian 12 for
+# arm64 has those.
 set -eu
 source=$1 build=$2 arm64=$3
 fail() { echo "arm64 packages: $*" >&2; exit 1; }
@@ -27,6 +28,8 @@ rm -r "$work"/{here,there}/usr/bin
 diff -r "$work/here" "$work/there" || fail "the packages' other files differ"
 depends() { dpkg-deb -f "$1" Depends | tr -d ' ' | tr , '\n' | sed 's/(.*//' | sort; }
 diff <(depends "$here") <(depends "$there") || fail 'the packages depend on different packages'
+mmdebstrap --simulate --variant=extract --architectures=arm64 --include="$(realpath "$there")" bookworm "$work/none.tar" \
+  > "$work/apt.log" 2>&1 || { tail -n 20 "$work/apt.log"; fail 'Debian 12 for arm64 has not all that the package depends on'; }
 
 # Nothing of this machine's own headers went in: what the compiler read is the source, the root folder, or its own.
 headers=$(ninja -C "$arm64" -t deps | sed -n 's/^    //p' | sort -u)
