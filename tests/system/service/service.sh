@@ -4,7 +4,7 @@
 # The installed package under a real systemd: makes a Debian 12 root folder, installs an older version in it, upgrades,
 # purges (nothing may be left), installs again, and boots the folder in User-mode Linux with systemd as process 1, where
 # guest-test plays on. Needs root, as every installation does. BUILD/packages has the packages, from packages.sh.
-# long: there also with a wrong cell file, a missing interface, and a purge while the service runs.
+# long: there also with a wrong cell file, a missing interface, and an upgrade and a purge while the service runs.
 set -eu
 build=$1 hang_loop=$2
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
@@ -40,10 +40,12 @@ files > "$work/after"
 diff "$work/before" "$work/after" || fail 'the purge left or took the above'
 echo "install, upgrade, remove, purge: nothing is left"
 in_root dpkg -i "/$(basename "$package")"
+mkdir -p "$root/test/classes"
+mv "$root/$(basename "$package")" "$root/test/stillcut.deb"
 rm "$root"/*.deb
 
 # A guest: this kernel's modules, the test and its helpers.
-mkdir -p "$root/usr/lib/modules" "$root/test/classes"
+mkdir -p "$root/usr/lib/modules"
 cp -a "/usr/lib/uml/modules/$kernel" "$root/usr/lib/modules/$kernel"
 make_bootable "$root" "$here"/test.{service,target}
 install -m 644 "$here"/{guest-test,controller.py,scenario.toml} "$here/../adapter_peer.py" "$hang_loop" "$root/test"
