@@ -108,6 +108,7 @@ class Monitor {
                     std::int64_t stamp_ns) const noexcept;
   [[nodiscard]] double evidence_asked(const SensorPath& path, const Suspect& suspect) const noexcept;
   bool look_for_wild_chatter(std::size_t sensor, std::int64_t stamp_ns) noexcept;
+  bool begin_wild_chatter(std::size_t sensor, std::int64_t stamp_ns, const LineCandidate& loudest) noexcept;
   bool look_for_unrepeated_chatter(std::size_t sensor, std::int64_t stamp_ns, double step_s) noexcept;
   void follow_orders(std::size_t sensor, bool trusted) noexcept;
   void follow_decay(std::size_t sensor, bool able) noexcept;

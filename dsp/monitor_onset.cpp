@@ -101,12 +101,8 @@ bool Monitor::look_for_wild_chatter(std::size_t index, std::int64_t stamp_ns) no
   wild_hops_[index] = wild ? wild_hops_[index] + 1 : 0;
   const int enough = steady_s_ < kNewCut_s ? 2 * kWildHops : kWildHops;
   if (wild_hops_[index] < enough || path.watch().candidates().empty()) return false;
-  const LineCandidate& loudest = path.watch().candidates().front();
-  const Tone tone = analyse_tone(path.watch().window(loudest.axis), path.sample_rate_hz(), loudest.frequency_hz);
-  if (of_forced(path, tone) < kLeastOfForced) return false;
+  if (!begin_wild_chatter(index, stamp_ns, path.watch().candidates().front())) return false;
   wild_hops_[index] = 0;
-  suspect_[index].line = Line::wild;
-  begin_chatter(index, stamp_ns, loudest, tone);
   return true;
 }
 
@@ -130,9 +126,16 @@ bool Monitor::look_for_unrepeated_chatter(std::size_t index, std::int64_t stamp_
   } else {
     return false;
   }
+  if (!begin_wild_chatter(index, stamp_ns, loudest)) return false;
+  heard.loud_s = 0.0;
+  return true;
+}
+
+// Chatter without a line of its own, told under the loudest there is; false where that moves the tool too little.
+bool Monitor::begin_wild_chatter(std::size_t index, std::int64_t stamp_ns, const LineCandidate& loudest) noexcept {
+  const SensorPath& path = sensors_[index].path;
   const Tone tone = analyse_tone(path.watch().window(loudest.axis), path.sample_rate_hz(), loudest.frequency_hz);
   if (of_forced(path, tone) < kLeastOfForced) return false;
-  heard.loud_s = 0.0;
   suspect_[index].line = Line::wild;
   begin_chatter(index, stamp_ns, loudest, tone);
   return true;

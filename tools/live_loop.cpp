@@ -63,7 +63,8 @@ void LiveLoop::keep_time(std::int64_t awake_ns) noexcept {
   if (!timekeeper_.tick(awake_ns)) return;
   LoopTimes& times = channels_.times;
   times.in_time.store(timekeeper_.in_time(), std::memory_order_relaxed);
-  if (!timekeeper_.in_time()) times.times_out.store(times.times_out.load(std::memory_order_relaxed) + 1);
+  if (!timekeeper_.in_time())  // one writer: no locked add needed
+    times.times_out.store(times.times_out.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (!must_keep_time_) return;
   timing_ = {fed_ns_ + kMicrosecond_ns, timekeeper_.in_time(), timekeeper_.longest_gap_ns()};
   has_timing_ = true;
