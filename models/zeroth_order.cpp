@@ -55,7 +55,8 @@ struct Crossing {
   double frequency;
   LobeBranch branch;
 };
-Crossing refine(const LinearCut& cut, std::span<const Mode> modes, double period, int which, Sample low, Sample high) {
+Crossing refine(const LinearCut& cut, const FeedReceptance& receptance, double period, int which, Sample low,
+                Sample high) {
   const auto index = static_cast<std::size_t>(which);
   double gap_low = wrapped_phase(low.frequency * period - lobe_branch(cut, low.eigenvalues[index]).phase);
   Crossing crossing{low.frequency, lobe_branch(cut, low.eigenvalues[index])};
@@ -63,7 +64,7 @@ Crossing refine(const LinearCut& cut, std::span<const Mode> modes, double period
     Sample middle{0.5 * (low.frequency + high.frequency), {}};
     const Pair halfway{0.5 * (low.eigenvalues[0] + high.eigenvalues[0]),
                        0.5 * (low.eigenvalues[1] + high.eigenvalues[1])};
-    middle.eigenvalues = continued(oriented_eigenvalues(cut, modes, middle.frequency), halfway);
+    middle.eigenvalues = continued(oriented_eigenvalues(cut, receptance(middle.frequency)), halfway);
     crossing = {middle.frequency, lobe_branch(cut, middle.eigenvalues[index])};
     const double gap = wrapped_phase(middle.frequency * period - crossing.branch.phase);
     if (gap == 0.0) break;
@@ -86,18 +87,31 @@ LobeBranch lobe_branch(const LinearCut& cut, Complex oriented_eigenvalue) {
   return {depth, phase - kTwoPi * std::floor(phase / kTwoPi)};
 }
 
-Pair oriented_eigenvalues(const LinearCut& cut, std::span<const Mode> modes, double frequency) {
+Pair oriented_eigenvalues(const LinearCut& cut, const Eigen::Matrix2cd& receptance) {
   // Altintas' coefficients are -2/k_tc times the integral of the cutting stiffness.
   const Eigen::Matrix2d alpha =
       -2.0 / cut.ktc * cutting_stiffness_integral(cut, cut.immersion.entry, cut.immersion.exit).topRows<2>();
-  const Eigen::Matrix2cd oriented = alpha.cast<Complex>() * receptance(modes, frequency).topLeftCorner<2, 2>();
+  const Eigen::Matrix2cd oriented = alpha.cast<Complex>() * receptance;
   const Complex half_trace = 0.5 * oriented.trace();
   const Complex root = std::sqrt(half_trace * half_trace - oriented.determinant());
   return {half_trace + root, half_trace - root};
 }
 
+Pair oriented_eigenvalues(const LinearCut& cut, std::span<const Mode> modes, double frequency) {
+  return oriented_eigenvalues(cut, Eigen::Matrix2cd(receptance(modes, frequency).topLeftCorner<2, 2>()));
+}
+
 std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<const Mode> modes,
                                             std::span<const double> speeds, double max_depth) {
+  const auto of_modes = [&](double frequency) {
+    return Eigen::Matrix2cd(receptance(modes, frequency).topLeftCorner<2, 2>());
+  };
+  return zeroth_order_limits(cut, modes, of_modes, speeds, max_depth);
+}
+
+std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<const Mode> modes,
+                                            const FeedReceptance& receptance, std::span<const double> speeds,
+                                            double max_depth) {
   check_modes(modes);
   if (!(max_depth > 0.0)) throw std::invalid_argument("largest depth: must be positive");
   double longest_period = 0.0;
@@ -107,7 +121,7 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
   }
   std::vector<Sample> samples;
   for (const double frequency : frequency_grid(modes, longest_period)) {
-    const Pair pair = oriented_eigenvalues(cut, modes, frequency);
+    const Pair pair = oriented_eigenvalues(cut, receptance(frequency));
     samples.push_back({frequency, samples.empty() ? pair : continued(pair, samples.back().eigenvalues)});
   }
   std::vector<std::array<LobeBranch, 2>> branches;
@@ -129,7 +143,7 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
         const double gap_a = wrapped_phase(samples[i].frequency * period - a.phase);
         const double gap_b = wrapped_phase(samples[i + 1].frequency * period - b.phase);
         if ((gap_a < 0.0) == (gap_b < 0.0) || std::abs(gap_a - gap_b) > std::numbers::pi) continue;
-        const Crossing crossing = refine(cut, modes, period, static_cast<int>(which), samples[i], samples[i + 1]);
+        const Crossing crossing = refine(cut, receptance, period, static_cast<int>(which), samples[i], samples[i + 1]);
         if (crossing.branch.depth > 0.0 && crossing.branch.depth < limit.depth) {
           limit.depth = crossing.branch.depth;
           limit.chatter_frequency = crossing.frequency;

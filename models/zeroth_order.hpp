@@ -3,8 +3,10 @@
 // frequency; what the runtime trusts is models/floquet.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,10 +31,20 @@ LobeBranch lobe_branch(const LinearCut& cut, std::complex<double> oriented_eigen
 std::array<std::complex<double>, 2> oriented_eigenvalues(const LinearCut& cut, std::span<const Mode> feed_frame_modes,
                                                          double frequency);
 
+// The same of a receptance given as such, 2 x 2 in the feed plane, m/N.
+std::array<std::complex<double>, 2> oriented_eigenvalues(const LinearCut& cut, const Eigen::Matrix2cd& receptance);
+
 // Depth limits at the given speeds (rad/s): the lower envelope over both eigenvalues and all lobes that cross each
 // speed. Chatter frequencies up to four times the highest mode are searched. Depths above max_depth are +inf. Throws
 // std::invalid_argument for speeds, depth or modes out of range.
 std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<const Mode> feed_frame_modes,
                                             std::span<const double> speeds, double max_depth);
+
+// The same for a receptance that is not that of modes in the feed frame (models/paper_projection.hpp): m/N at a
+// frequency in rad/s. `modes` tell where it turns, in whatever axes.
+using FeedReceptance = std::function<Eigen::Matrix2cd(double frequency)>;
+std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<const Mode> modes,
+                                            const FeedReceptance& receptance, std::span<const double> speeds,
+                                            double max_depth);
 
 }  // namespace stillcut
