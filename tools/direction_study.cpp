@@ -127,9 +127,11 @@ void write_directions_csv(const DirectionsResult& result, std::ostream& out) {
   for (const PostureDirections& posture : result.postures) {
     for (const DirectionCurve& curve : posture.curves) {
       const Pocket pocket = deepest_pocket(curve.limits, result.study.speeds);
-      write_csv_row(out, {csv_text(posture.predicted.posture.id), csv_number(as_given(rad_to_deg(curve.direction))),
-                          csv_number(absolute_limit(curve.limits) * 1e3), csv_number(pocket.depth * 1e3),
-                          csv_number(as_given(rad_s_to_rpm(pocket.speed)))});
+      const std::vector<std::string> fields{
+          csv_text(posture.predicted.posture.id), csv_number(as_given(rad_to_deg(curve.direction))),
+          csv_number(absolute_limit(curve.limits) * 1e3), csv_number(pocket.depth * 1e3),
+          csv_number(as_given(rad_s_to_rpm(pocket.speed)))};
+      write_csv_row(out, fields);
     }
   }
 }

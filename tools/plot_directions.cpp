@@ -56,7 +56,8 @@ plot::Figure directions_figure(const DirectionsResult& result) {
   plot::Panel panel;
   double longest = 0.0;
   const bool named = result.postures.size() <= kTurns.size();
-  plot::Scatter best{.label = "best direction"};
+  plot::Scatter best;
+  best.label = "best direction";
   for (std::size_t i = 0; i < result.postures.size(); ++i) {
     const PostureDirections& posture = result.postures[i];
     plot::Line line = around(posture, max_depth);

@@ -38,7 +38,8 @@ TEST(DirectionsCommand, CsvIsAsPinnedAndAgreesWithTheLobes) {
             cell.path());
     ASSERT_EQ(lobes.exit_code, 0) << lobes.err;
     double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
-    for (const CsvRow& point : parse_csv(lobes.out, "stdout").rows()) {
+    const CsvTable points = parse_csv(lobes.out, "stdout");
+    for (const CsvRow& point : points.rows()) {
       lowest = std::min(lowest, std::stod(point.fields[1]));
       highest = std::max(highest, std::stod(point.fields[1]));
     }
@@ -53,8 +54,8 @@ TEST(DirectionsCommand, EveryPostureOfTheMapIsTheDefaultAndTheBestDirectionHasTh
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const json result = json::parse(done.out);
   EXPECT_EQ(result["method"], "zoa");
-  const auto postures = parse_csv(content_of(cell.path() / "map" / "postures.csv"), "postures.csv").rows().size();
-  ASSERT_EQ(result["postures"].size(), postures);
+  const CsvTable postures = parse_csv(content_of(cell.path() / "map" / "postures.csv"), "postures.csv");
+  ASSERT_EQ(result["postures"].size(), postures.rows().size());
   for (const json& posture : result["postures"]) {
     ASSERT_EQ(posture["directions"].size(), 8U);
     double best = 0.0, at_best = -1.0;
@@ -84,7 +85,8 @@ TEST(DirectionsCommand, RadialDepthAndMillingChangeTheLimitsAndAlternatingIsTheL
     const Finished done = run(arguments, cell.path());
     EXPECT_EQ(done.exit_code, 0) << done.err;
     std::vector<double> values;
-    for (const CsvRow& row : parse_csv(done.out, "stdout").rows()) values.push_back(std::stod(row.fields[2]));
+    const CsvTable table = parse_csv(done.out, "stdout");
+    for (const CsvRow& row : table.rows()) values.push_back(std::stod(row.fields[2]));
     return values;
   };
   const auto down = limits({"--milling", "down"}), up = limits({"--milling", "up"});
