@@ -24,6 +24,10 @@ Pair continued(Pair pair, const Pair& before) {
   return pair;
 }
 
+Eigen::Matrix2cd in_feed_plane(std::span<const Mode> feed_frame_modes, double frequency) {
+  return receptance(feed_frame_modes, frequency).topLeftCorner<2, 2>();
+}
+
 // Frequencies dense where a mode's response turns (spacing a fraction of its width), and dense enough everywhere that
 // the phase between waves turns little from one to the next even at the lowest speed.
 std::vector<double> frequency_grid(std::span<const Mode> modes, double longest_period) {
@@ -98,14 +102,12 @@ Pair oriented_eigenvalues(const LinearCut& cut, const Eigen::Matrix2cd& receptan
 }
 
 Pair oriented_eigenvalues(const LinearCut& cut, std::span<const Mode> modes, double frequency) {
-  return oriented_eigenvalues(cut, Eigen::Matrix2cd(receptance(modes, frequency).topLeftCorner<2, 2>()));
+  return oriented_eigenvalues(cut, in_feed_plane(modes, frequency));
 }
 
 std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<const Mode> modes,
                                             std::span<const double> speeds, double max_depth) {
-  const auto of_modes = [&](double frequency) {
-    return Eigen::Matrix2cd(receptance(modes, frequency).topLeftCorner<2, 2>());
-  };
+  const auto of_modes = [&](double frequency) { return in_feed_plane(modes, frequency); };
   return zeroth_order_limits(cut, modes, of_modes, speeds, max_depth);
 }
 

@@ -2,62 +2,21 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
-#include <exception>
 #include <iomanip>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "drivers/files/csv.hpp"
+#include "tools/tasks_on_threads.hpp"
 
 namespace stillcut {
 namespace {
 
 // Values as users gave them: without the rounding of the way to SI units and back.
 double as_given(double value) { return std::round(value * 1e6) / 1e6; }
-
-// Takes one posture after the other, on several threads; the first error ends it.
-class PostureWork {
- public:
-  PostureWork(const Cell& cell, const Cut& cut, DirectionsResult& result)
-      : tool_{require(cell, cell.tool, "tool")},
-        material_{require(cell, cell.material, "material")},
-        cut_{cut},
-        result_{result} {}
-
-  void run() {
-    try {
-      for (std::size_t i = next_++; i < result_.postures.size() && !error_; i = next_++) {
-        PostureDirections& posture = result_.postures[i];
-        posture.curves = limits_over_direction(tool_, material_, cut_, posture.predicted.posture.modes, result_.study);
-        ++done_;
-      }
-    } catch (...) {
-      const std::lock_guard lock{mutex_};
-      if (!error_) error_ = std::current_exception();
-      done_ = result_.postures.size();
-    }
-  }
-
-  [[nodiscard]] double share() const {
-    return static_cast<double>(done_) / static_cast<double>(result_.postures.size());
-  }
-  [[nodiscard]] const std::exception_ptr& error() const { return error_; }
-
- private:
-  const Tool& tool_;
-  const Material& material_;
-  const Cut& cut_;
-  DirectionsResult& result_;
-  std::atomic<std::size_t> next_{0}, done_{0};
-  std::mutex mutex_;
-  std::exception_ptr error_;
-};
 
 nlohmann::ordered_json depth_json(double depth) {
   if (std::isfinite(depth)) return as_given(depth * 1e3);
@@ -95,21 +54,19 @@ DirectionsResult study_directions(const Cell& cell, const Cut& cut, const std::v
       if (told.insert(line).second) result.warnings.push_back(line);
   }
 
-  PostureWork work{cell, cut, result};
-  {
-    std::vector<std::jthread> workers;
-    for (int i = 0; i < std::max(1, threads); ++i) workers.emplace_back([&] { work.run(); });
-    while (work.share() < 1.0) {
-      progress(work.share());
-      std::this_thread::sleep_for(std::chrono::milliseconds{5});
-    }
-  }
-  if (work.error()) {
-    try {
-      std::rethrow_exception(work.error());
-    } catch (const std::invalid_argument& error) {
-      throw InputError(cell.file.string(), 0, error.what());
-    }
+  const Tool& tool = require(cell, cell.tool, "tool");
+  const Material& material = require(cell, cell.material, "material");
+  std::atomic<std::size_t> done{0};
+  const auto solve = [&](std::size_t i) {
+    PostureDirections& posture = result.postures[i];
+    posture.curves = limits_over_direction(tool, material, cut, posture.predicted.posture.modes, study);
+    ++done;
+  };
+  try {
+    run_tasks(result.postures.size(), threads, solve,
+              [&] { progress(static_cast<double>(done) / static_cast<double>(result.postures.size())); });
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell.file.string(), 0, error.what());
   }
   return result;
 }

@@ -66,7 +66,8 @@ void LiveLoop::keep_time(std::int64_t awake_ns) noexcept {
   if (!timekeeper_.in_time())  // one writer: no locked add needed
     times.times_out.store(times.times_out.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (!must_keep_time_) return;
-  timing_ = {fed_ns_ + kMicrosecond_ns, timekeeper_.in_time(), timekeeper_.longest_gap_ns()};
+  timing_.in_time = timekeeper_.in_time();
+  timing_.longest_gap_ns = timekeeper_.longest_gap_ns();
   has_timing_ = true;
 }
 
@@ -103,8 +104,9 @@ void LiveLoop::take_lobes(const LobesAnswer& answer) noexcept {
 }
 
 void LiveLoop::feed_messages_until(std::int64_t stamp_ns) noexcept {
-  if (has_timing_ && frame_fed_) timing_.stamp_ns = std::max(timing_.stamp_ns, fed_ns_ + kMicrosecond_ns);
-  if (has_timing_ && frame_fed_ && timing_.stamp_ns <= stamp_ns) {  // before the first frame there is no time
+  // Before the first frame there is no time.
+  if (has_timing_ && frame_fed_ && fed_ns_ + kMicrosecond_ns <= stamp_ns) {
+    timing_.stamp_ns = fed_ns_ + kMicrosecond_ns;
     pipeline_.core().add_timing(timing_);
     record(timing_);
     has_timing_ = false;

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <exception>
-#include <future>
 
 #include "drivers/can/candump_log.hpp"
 #include "tools/pipeline.hpp"
+#include "tools/tasks_on_threads.hpp"
 
 namespace stillcut {
 namespace {
@@ -106,33 +104,12 @@ std::vector<HeardLog> hear_logs(const Cell& cell, const LobeDiagram& lobes, std:
   }
   frames *= static_cast<double>(limits.size());
 
-  // All logs at the first limit come first: a log that cannot be used is told of soon. Those taken before one that
-  // fails are still heard to their end, so that the error told is always that of the first such log.
+  // All logs at the first limit come first: a log that cannot be used is told of soon.
   std::vector<HeardOnce> heard(logs.size() * limits.size());
-  std::vector<std::exception_ptr> failures(heard.size());
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};
-  const auto work = [&] {
-    while (!failed) {
-      const std::size_t task = next++;
-      if (task >= heard.size()) return;
-      try {
-        heard[task] = hear(playing, logs[task % logs.size()], limits[task / logs.size()]);
-      } catch (...) {
-        failures[task] = std::current_exception();
-        failed = true;
-      }
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 0; i < std::max(1, jobs); ++i) workers.push_back(std::async(std::launch::async, work));
-  for (auto& worker : workers) {
-    while (worker.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
-      progress(static_cast<double>(frames_played) / frames);
-    worker.get();
-  }
-  for (const auto& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  run_tasks(
+      heard.size(), jobs,
+      [&](std::size_t task) { heard[task] = hear(playing, logs[task % logs.size()], limits[task / logs.size()]); },
+      [&] { progress(static_cast<double>(frames_played) / frames); });
 
   std::vector<HeardLog> result(logs.size());
   for (std::size_t task = 0; task < heard.size(); ++task) {
