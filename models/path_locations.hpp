@@ -1,0 +1,38 @@
+// Which way a tool path feeds at each location of a machining area. The locations stand for all that is nearer to them
+// than to any other (feed-direction paper, section 5.2: the area covered by the path, discretized into points).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "models/tool_path.hpp"
+
+namespace stillcut {
+
+struct LocalCut {
+  std::size_t location = 0;
+  double direction = 0.0;    // rad, in [0, pi): the one in which the path cuts the longest way there
+  bool alternating = false;  // along it, both down and up
+};
+
+struct PathOnLocations {
+  std::vector<LocalCut> cuts;                     // of the locations that the path comes to, in their order
+  double cutting_length = 0.0, air_length = 0.0;  // m, in all
+  double farthest = 0.0;                          // m, of a cutting place from its location
+  Eigen::Vector2d farthest_place{0.0, 0.0};       // m
+};
+
+// How far a location speaks for its surroundings, m: the longest way from one to its nearest neighbour; infinite for a
+// single one, which speaks for everything.
+double reach_of(std::span<const Eigen::Vector2d> places);
+
+// Directions within `same_direction` (rad) of the longest move's are taken as one. Moves across the plane count,
+// plunges do not. Throws std::invalid_argument without locations.
+PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::Vector2d> places,
+                                  double same_direction = 0.0873);
+
+// The location that stands for a place: the nearest, of equally near ones the first.
+std::size_t nearest_location(const Eigen::Vector2d& place, std::span<const Eigen::Vector2d> places);
+
+}  // namespace stillcut
