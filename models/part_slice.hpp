@@ -13,10 +13,9 @@
 #include <span>
 #include <vector>
 
-namespace stillcut {
+#include "models/contour.hpp"
 
-// A closed contour, m, workpiece axes; the last point joins the first.
-using Contour = std::vector<Eigen::Vector2d>;
+namespace stillcut {
 
 class PartSlice {
  public:

@@ -12,15 +12,11 @@
 #include "dsp/numbers.hpp"
 #include "models/interpolation_kind.hpp"
 #include "models/machining.hpp"
+#include "models/region.hpp"
 #include "rt/compensation_limits.hpp"
 #include "rt/signals.hpp"
 
 namespace stillcut {
-
-struct RegionSettings {
-  std::vector<std::array<double, 2>> polygon;               // m
-  std::vector<std::vector<std::array<double, 2>>> islands;  // m
-};
 
 struct DynamicsSettings {
   std::filesystem::path map;  // folder, absolute
@@ -74,7 +70,7 @@ struct Cell {
   std::optional<Tool> tool;
   std::optional<Material> material;
   std::optional<Cut> cut;
-  std::optional<RegionSettings> region;
+  std::optional<Region> region;
   std::optional<SpindleLimits> spindle;
   std::optional<DynamicsSettings> dynamics;
   std::optional<CanSettings> can;

@@ -31,23 +31,10 @@ std::vector<double> read_pitch(TomlSection& section, int teeth) {
   return pitch;
 }
 
-// Shoelace formula; a polygon without area bounds nothing.
-double signed_area(const std::vector<std::array<double, 2>>& polygon) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const auto& a = polygon[i];
-    const auto& b = polygon[(i + 1) % polygon.size()];
-    twice += a[0] * b[1] - b[0] * a[1];
-  }
-  return 0.5 * twice;
-}
-
-void scale_to_metres(const TomlSection& section, std::string_view key, std::vector<std::array<double, 2>>& polygon) {
-  for (auto& point : polygon) {
-    for (double& coordinate : point) coordinate *= kMilli;
-  }
-  const double area = std::abs(signed_area(polygon));
-  if (!(area > 0.0) || !std::isfinite(area)) section.fail(key, "a polygon encloses no area; correct its points");
+Contour contour_in_metres(const std::vector<std::array<double, 2>>& points_mm) {
+  Contour contour;
+  for (const auto& [x, y] : points_mm) contour.emplace_back(x * kMilli, y * kMilli);
+  return without_repeats(contour);
 }
 
 }  // namespace
@@ -106,13 +93,14 @@ Cut read_cut(TomlSection section, const std::optional<Tool>& tool) {
   return cut;
 }
 
-RegionSettings read_region(TomlSection section) {
-  RegionSettings region;
-  region.polygon = section.points("polygon_mm");
-  region.islands = section.lists_of_points("islands_mm");
+Region read_region(TomlSection section) {
+  const auto polygon_mm = section.points("polygon_mm");
+  const auto islands_mm = section.lists_of_points("islands_mm");
   section.finish();
-  scale_to_metres(section, "polygon_mm", region.polygon);
-  for (auto& island : region.islands) scale_to_metres(section, "islands_mm", island);
+  Region region{contour_in_metres(polygon_mm), {}};
+  if (const auto fault = polygon_fault(region.polygon)) section.fail("polygon_mm", *fault);
+  for (const auto& island : islands_mm) region.islands.push_back(contour_in_metres(island));
+  if (const auto fault = islands_fault(region)) section.fail("islands_mm", *fault);
   return region;
 }
 

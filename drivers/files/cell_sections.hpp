@@ -13,7 +13,7 @@ namespace stillcut {
 Tool read_tool(TomlSection section);
 Material read_material(TomlSection section);
 Cut read_cut(TomlSection section, const std::optional<Tool>& tool);
-RegionSettings read_region(TomlSection section);
+Region read_region(TomlSection section);
 SpindleLimits read_spindle(TomlSection section);
 
 // Devices and files (cell_devices.cpp). `folder` is where relative paths start.
