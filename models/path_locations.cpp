@@ -27,27 +27,42 @@ void add_to(std::vector<Stretch>& stretches, double direction, double length, st
   found->up = found->up || milling == Milling::up;
 }
 
-// The direction around which most is cut: of chords of an arc none is long, but their neighbours count with them.
-LocalCut longest(const std::vector<Stretch>& stretches, std::size_t location, double same_direction) {
-  LocalCut best{location};
-  double best_length = -1.0;
-  for (const Stretch& middle : stretches) {
-    double length = 0.0;
-    bool down = false, up = false;
-    for (const Stretch& other : stretches) {
-      if (axis_angle(other.direction, middle.direction) > same_direction) continue;
-      length += other.length;
-      down = down || other.down;
-      up = up || other.up;
-    }
-    constexpr double kNoLonger = 1.0 + 1e-9;  // lengths that differ by rounding only: the first one stays
-    if (length > best_length * kNoLonger) {
-      best_length = length;
-      best.direction = middle.direction;
-      best.alternating = down && up;
-    }
+// Cutting within `same_direction` of a stretch's own direction.
+Stretch gathered_around(const Stretch& middle, const std::vector<Stretch>& stretches, double same_direction) {
+  Stretch sum{middle.direction};
+  for (const Stretch& other : stretches) {
+    if (axis_angle(other.direction, middle.direction) > same_direction) continue;
+    sum.length += other.length;
+    sum.down = sum.down || other.down;
+    sum.up = sum.up || other.up;
   }
-  return best;
+  return sum;
+}
+
+// The direction around which most is cut, what is left, and so on. Of directions in which as much is cut, but for
+// rounding, the lowest angle, so that a path and the same path backwards are told alike.
+void add_cuts(std::vector<Stretch> stretches, std::size_t location, double same_direction,
+              std::vector<LocalCut>& cuts) {
+  constexpr double kLeastShare = 0.1, kLonger = 1.0 + 1e-6;
+  double all = 0.0, kept = 0.0;
+  for (const Stretch& stretch : stretches) all += stretch.length;
+  std::sort(stretches.begin(), stretches.end(),
+            [](const Stretch& a, const Stretch& b) { return a.direction < b.direction; });
+  const auto first = static_cast<std::ptrdiff_t>(cuts.size());
+  while (!stretches.empty()) {
+    Stretch most;
+    for (const Stretch& stretch : stretches) {
+      const Stretch sum = gathered_around(stretch, stretches, same_direction);
+      if (sum.length > kLonger * most.length) most = sum;
+    }
+    if (most.length < kLeastShare * all) break;
+    cuts.push_back({location, most.direction, most.length, most.down && most.up});
+    kept += most.length;
+    std::erase_if(stretches, [&](const Stretch& stretch) {
+      return axis_angle(stretch.direction, most.direction) <= same_direction;
+    });
+  }
+  std::for_each(cuts.begin() + first, cuts.end(), [&](LocalCut& cut) { cut.share /= kept; });
 }
 
 }  // namespace
@@ -96,7 +111,7 @@ PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::V
     }
   }
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (!stretches[i].empty()) result.cuts.push_back(longest(stretches[i], i, same_direction));
+    if (!stretches[i].empty()) add_cuts(std::move(stretches[i]), i, same_direction, result.cuts);
   return result;
 }
 

@@ -12,12 +12,13 @@ namespace stillcut {
 
 struct LocalCut {
   std::size_t location = 0;
-  double direction = 0.0;    // rad, in [0, pi): the one in which the path cuts the longest way there
+  double direction = 0.0;    // rad, in [0, pi)
+  double share = 1.0;        // of what is cut at the location: 1 where it is all in one direction
   bool alternating = false;  // along it, both down and up
 };
 
 struct PathOnLocations {
-  std::vector<LocalCut> cuts;                     // of the locations that the path comes to, in their order
+  std::vector<LocalCut> cuts;  // of the locations that the path comes to, in their order; the shares of each sum to 1
   double cutting_length = 0.0, air_length = 0.0;  // m, in all
   double farthest = 0.0;                          // m, of a cutting place from its location
   Eigen::Vector2d farthest_place{0.0, 0.0};       // m
@@ -27,8 +28,9 @@ struct PathOnLocations {
 // single one, which speaks for everything.
 double reach_of(std::span<const Eigen::Vector2d> places);
 
-// Directions within `same_direction` (rad) of the longest move's are taken as one. Moves across the plane count,
-// plunges do not. Throws std::invalid_argument without locations.
+// Directions within `same_direction` (rad) of one in which much is cut are taken as that one, as with the chords of an
+// arc; what makes up less than a tenth of the cutting at a location, as links from pass to pass do, is left out. Moves
+// across the plane count, plunges do not. Throws std::invalid_argument without locations.
 PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::Vector2d> places,
                                   double same_direction = 0.0873);
 

@@ -76,6 +76,20 @@ Contour without_straight_points(const Contour& points) {
   return result;
 }
 
+PlanePieces in_window(PlanePieces pieces, const Region& region, const PatternWindow& window) {
+  const PatternWindow everything;
+  if (window.x_begin == everything.x_begin && window.x_end == everything.x_end &&
+      window.y_begin == everything.y_begin && window.y_end == everything.y_end)
+    return pieces;
+  Eigen::Vector2d low = region.polygon.front(), high = low;
+  for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  const double left = std::max(window.x_begin, low.x()), right = std::min(window.x_end, high.x());
+  const double bottom = std::max(window.y_begin, low.y()), top = std::min(window.y_end, high.y());
+  if (!(left < right && bottom < top)) return {};
+  const PlanePiece frame{{{left, bottom}, {right, bottom}, {right, top}, {left, top}}, {}};
+  return common_to(pieces, std::span(&frame, 1));
+}
+
 // Puts passes end to end: a link where the tool may stay down, otherwise up, across and down.
 class PatternWriter {
  public:
@@ -96,7 +110,9 @@ class PatternWriter {
     for (const Eigen::Vector2d& point : points) move(down(point), true, pass.milling);
   }
 
-  void finish() { move(above(at_.head<2>()), false, std::nullopt); }
+  void finish() {
+    if (!path.moves.empty()) move(above(at_.head<2>()), false, std::nullopt);
+  }
 
   ToolPath path;
 
@@ -148,7 +164,7 @@ std::string pattern_name(PatternKind kind, double angle) {
 ToolPath make_pattern(const Region& given, PatternKind kind, double angle, const PatternSettings& settings) {
   const Region region = checked(given);
   check(region, angle, settings);
-  PlanePieces pieces = pieces_to_machine(region, settings);
+  const PlanePieces pieces = in_window(pieces_to_machine(region, settings), region, settings.window);
 
   struct Placed {
     PatternPass pass;

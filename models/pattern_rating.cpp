@@ -9,7 +9,7 @@
 namespace stillcut {
 namespace {
 
-double mean_of_ratios(double sum, int count) { return count > 0 ? sum / count : kNaN; }
+double mean_of(double sum, double weight) { return weight > 0.0 ? sum / weight : kNaN; }
 
 }  // namespace
 
@@ -33,24 +33,25 @@ PatternRating rate_path(const DirectionTable& table, const PathOnLocations& path
   PatternRating rating;
   rating.min_absolute = kInfinity;
   double ratios = 0.0, pocket_ratios = 0.0;
-  int rated = 0, pockets_rated = 0;
+  double rated = 0.0, pockets_rated = 0.0;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const LocationLimits& location = table.locations[path.cuts[i].location];
+    const double share = path.cuts[i].share;
     const double limit = bounded_absolute_limit(*curves[i], table.max_depth);
     rating.min_absolute = std::min(rating.min_absolute, limit);
     rating.max_absolute = std::max(rating.max_absolute, limit);
     const double ratio = stability_ratio(location, *curves[i], table.max_depth);
-    if (!std::isnan(ratio)) ratios += ratio, ++rated;
+    if (!std::isnan(ratio)) ratios += share * ratio, rated += share;
     double best_pocket = 0.0;
     for (const DirectionCurve& curve : location.curves)
       best_pocket = std::max(best_pocket, bounded_pocket_depth(curve, table.max_depth));
     if (best_pocket > 0.0) {
-      pocket_ratios += std::min(bounded_pocket_depth(*curves[i], table.max_depth) / best_pocket, 1.0);
-      ++pockets_rated;
+      pocket_ratios += share * std::min(bounded_pocket_depth(*curves[i], table.max_depth) / best_pocket, 1.0);
+      pockets_rated += share;
     }
   }
-  rating.asi = mean_of_ratios(ratios, rated);
-  rating.msi = mean_of_ratios(pocket_ratios, pockets_rated);
+  rating.asi = mean_of(ratios, rated);
+  rating.msi = mean_of(pocket_ratios, pockets_rated);
   rating.common = deepest_pocket(common_limits(curves, table.max_depth), table.speeds);
   const double feed_rate = feed_rate_at(conditions, rating.common.speed);
   rating.removal_rate = rating.common.depth * conditions.radial_depth * feed_rate;

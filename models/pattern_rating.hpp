@@ -9,9 +9,9 @@
 namespace stillcut {
 
 struct PatternRating {
-  double asi =
-      0.0;  // mean over the locations of a_abs along the path over that of the best direction; NaN: none stable
-  double msi = 0.0;                               // the same of the deepest pockets
+  double asi = 0.0;  // mean over the locations, and there over what is cut, of a_abs along the path over that of the
+                     // best direction; NaN: none stable
+  double msi = 0.0;  // the same of the deepest pockets
   double min_absolute = 0.0, max_absolute = 0.0;  // m, of a_abs along the path
   Pocket common;                                  // deepest depth stable at all locations at one speed
   double removal_rate = 0.0;                      // m^3/s, at the common pocket

@@ -21,6 +21,7 @@ int run_stillcut(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", STILLCUT_VERSION);
   add_directions_command(app);
+  add_patterns_command(app);
   add_doctor_command(app);
   add_hil_command(app);
   add_lobes_command(app);

@@ -8,6 +8,7 @@
 namespace stillcut {
 
 void add_directions_command(CLI::App& app);
+void add_patterns_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
 void add_hil_command(CLI::App& app);
 void add_lobes_command(CLI::App& app);

@@ -28,21 +28,39 @@ std::vector<Eigen::Vector2d> places(int columns, int rows) {
   return result;
 }
 
-TEST(PathOnLocations, EachLocationHasTheDirectionInWhichMostIsCutNearIt) {
+TEST(PathOnLocations, EachLocationHasTheDirectionsInWhichIsCutNearIt) {
   // Along the bottom, then up the right side, of a square of three by three.
   const auto spots = places(3, 3);
   const PathOnLocations result = path_on_locations(polyline({{0, 0}, {0.1, 0}, {0.1, 0.1}}), spots);
-  ASSERT_EQ(result.cuts.size(), 5u);
+  ASSERT_EQ(result.cuts.size(), 6u);  // both ways at the corner
   EXPECT_NEAR(result.cutting_length, 0.2, 1e-12);
   for (const LocalCut& cut : result.cuts) {
-    const bool right_side = cut.location == 5 || cut.location == 8;
+    EXPECT_NEAR(cut.share, cut.location == 2 ? 0.5 : 1.0, 1e-9) << cut.location;
     if (cut.location == 2) continue;
+    const bool right_side = cut.location == 5 || cut.location == 8;
     EXPECT_NEAR(cut.direction, right_side ? std::numbers::pi / 2 : 0.0, 1e-9) << cut.location;
   }
 }
 
+TEST(PathOnLocations, APathAndTheSamePathBackwardsAreToldAlike) {
+  std::vector<Eigen::Vector2d> points;
+  for (double side = 0.1; side > 0.0; side -= 0.0125)  // loops, one in the other
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}})
+      points.emplace_back(0.1 + x * side, 0.1 + y * side);
+  const PathOnLocations forth = path_on_locations(polyline(points), places(5, 5));
+  std::reverse(points.begin(), points.end());
+  const PathOnLocations back = path_on_locations(polyline(points), places(5, 5));
+  ASSERT_EQ(forth.cuts.size(), back.cuts.size());
+  for (std::size_t i = 0; i < forth.cuts.size(); ++i) {
+    EXPECT_EQ(forth.cuts[i].location, back.cuts[i].location);
+    EXPECT_LT(axis_angle(forth.cuts[i].direction, back.cuts[i].direction), 1e-9);
+    EXPECT_NEAR(forth.cuts[i].share, back.cuts[i].share, 1e-9);
+  }
+}
+
 TEST(PathOnLocations, AShortLinkDoesNotChangeTheDirection) {
-  const auto result = path_on_locations(polyline({{0, 0}, {0.1, 0}, {0.1, 0.012}, {0, 0.012}}), places(3, 1));
+  const auto result = path_on_locations(polyline({{0, 0}, {0.1, 0}, {0.1, 0.004}, {0, 0.004}}), places(3, 1));
+  EXPECT_EQ(result.cuts.size(), 3u);
   for (const LocalCut& cut : result.cuts) EXPECT_NEAR(cut.direction, 0.0, 1e-9);
 }
 
@@ -53,12 +71,13 @@ TEST(PathOnLocations, ChordsOfAnArcCountTogether) {
     points.emplace_back(0.65 * std::sin(angle), 0.65 * (1 - std::cos(angle)));
   }
   const auto result = path_on_locations(polyline(points), places(1, 1));
-  ASSERT_EQ(result.cuts.size(), 1u);
+  ASSERT_EQ(result.cuts.size(), 2u);
   EXPECT_LT(axis_angle(result.cuts[0].direction, 0.0), deg_to_rad(2.1));
+  EXPECT_NEAR(result.cuts[0].share, 0.6, 0.01) << "45 mm of arc beside 30 mm across";
 }
 
 TEST(PathOnLocations, ToAndFroIsAlternatingOnlyWhereTheMillingChanges) {
-  ToolPath path = polyline({{0, 0}, {0.1, 0}, {0.1, 0.01}, {0, 0.01}});
+  ToolPath path = polyline({{0, 0}, {0.1, 0}, {0.1, 0.004}, {0, 0.004}});
   EXPECT_FALSE(path_on_locations(path, places(3, 1)).cuts[0].alternating);
   path.moves[2].milling = Milling::up;
   for (const LocalCut& cut : path_on_locations(path, places(3, 1)).cuts) EXPECT_TRUE(cut.alternating);
@@ -103,11 +122,13 @@ class Rating : public testing::Test {
 TEST_F(Rating, GivesTheIndexAsTheMeanOfTheRatios) {
   const auto path = path_on_locations(polyline({{0, 0}, {0.1, 0}, {0.1, 0.1}, {0, 0.1}}), places(3, 3));
   const PatternRating rating = rate_path(table, path, conditions);
-  // Seven locations: the path leaves out the left one and the middle one of the middle row, and only at the right one
-  // it cuts across; where it turns, the longer way counts, which is the first.
-  double sum = 0.0;
-  for (const LocalCut& cut : path.cuts) sum += falling_from(0.0, cut.direction, 1.0);
-  EXPECT_EQ(path.cuts.size(), 7u);
+  // Seven locations: the path leaves out the left one and the middle one of the middle row. It turns at two corners.
+  double sum = 0.0, shares = 0.0;
+  for (const LocalCut& cut : path.cuts) {
+    sum += cut.share * falling_from(0.0, cut.direction, 1.0);
+    shares += cut.share;
+  }
+  EXPECT_NEAR(shares, 7.0, 1e-12);
   EXPECT_NEAR(rating.asi, sum / 7.0, 1e-12);
   EXPECT_LT(rating.asi, 1.0);
   EXPECT_NEAR(rating.msi, rating.asi, 1e-12) << "here every limit falls alike";
