@@ -70,7 +70,7 @@ class ClReader {
     const std::string& word = said_.word;
     if (word == "GOTO") return go_to();
     if (word == "GODLTA") return go_by();
-    if (word == "FROM") return begin_at(place());
+    if (word == "FROM") return go_from();
     if (word == "RAPID") return void(rapid_ = true);
     if (word == "FEDRAT") return take_feed();
     if (word == "SPINDL") return take_spindle();
@@ -110,7 +110,7 @@ class ClReader {
   Eigen::Vector3d place() {
     if (said_.items.size() != 3 && said_.items.size() != 6)
       fail("has " + std::to_string(said_.items.size()) + " items; give x,y,z or x,y,z,i,j,k");
-    const Eigen::Vector3d at = unit_ * numbers_from(0);
+    Eigen::Vector3d at = unit_ * numbers_from(0);
     builder_.check_reach(at, said_.line);
     if (said_.items.size() == 6) {
       const Eigen::Vector3d axis = numbers_from(3);
@@ -130,6 +130,14 @@ class ClReader {
     begins_ = true;
     if (!named_ && !said_.items.empty() && !said_.items[0].empty()) builder_.path().name = said_.items[0];
     named_ = true;
+  }
+
+  // Between the paths of a file the tool gets there somehow: not by cutting.
+  void go_from() {
+    const bool rapid = rapid_;
+    begins_ = true;
+    move_to(place());
+    rapid_ = rapid;
   }
 
   void go_to() { move_to(place()); }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kTextWords{"PARTNO", "PPRINT", "REMARK", "TPRINT", "INSERT"};
 constexpr int kMostContinuations = 100;
+constexpr std::size_t kMostItems = 1000;  // files that are no paths have more than memory
 
 std::string_view without_blanks(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
@@ -72,6 +73,8 @@ bool next_cl_statement(std::string_view& text, const std::string& file, int& lin
     }
     for (std::string_view rest = std::string_view(whole).substr(slash + 1);;) {
       const auto comma = std::min(rest.find(','), rest.size());
+      if (statement.items.size() == kMostItems)
+        throw InputError(file, statement.line, "more than 1000 items in one statement; is it a cutter location file?");
       statement.items.push_back(upper_case(without_blanks(rest.substr(0, comma))));
       if (comma == rest.size()) return true;
       rest.remove_prefix(comma + 1);

@@ -15,7 +15,8 @@ struct ClStatement {
 
 // Cuts the next statement off `text` and counts its lines in `line` (of what was read before); false at the end of the
 // text. $$ begins a comment, $ at a line's end goes on in the next; words of free text (PARTNO, PPRINT, ...) take the
-// whole line. Throws InputError: a continuation without a next line, or one without end.
+// whole line. Throws InputError: a continuation without a next line, or one without end;
+// more items than a statement has.
 bool next_cl_statement(std::string_view& text, const std::string& file, int& line, ClStatement& statement);
 
 }  // namespace stillcut

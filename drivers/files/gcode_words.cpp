@@ -11,6 +11,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kLargestNumber = 1e10;  // beyond it an arc's points lose the micrometre to rounding
+constexpr std::size_t kMostWords = 100;  // of one line; files that are no programs have more than memory
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kGcodeBlanks = " \t\r";
 constexpr std::string_view kNumberParts = "0123456789.+-";
@@ -23,7 +24,10 @@ class WordCutter {
     words.clear();
     skip_blanks_and_comments();
     skip_block_delete();
-    for (skip_blanks_and_comments(); !rest_.empty(); skip_blanks_and_comments()) words.push_back(word());
+    for (skip_blanks_and_comments(); !rest_.empty(); skip_blanks_and_comments()) {
+      if (words.size() == kMostWords) fail("more than 100 words in one line; is it G-code?");
+      words.push_back(word());
+    }
   }
 
  private:

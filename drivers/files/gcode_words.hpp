@@ -14,7 +14,8 @@ struct GcodeWord {
 };
 
 // Fills `words`; comments in ( ) and after ; are dropped, and so is the / of block delete. Throws InputError: a comment
-// left open, a number that is none or above 10^10, a character that begins no word, variables and expressions, O-words.
+// left open, a number that is none or above 10^10, a character that begins no word, variables and expressions, O-words,
+// more than a hundred words.
 void read_gcode_words(std::string_view line, const std::string& file, int line_number, std::vector<GcodeWord>& words);
 
 }  // namespace stillcut

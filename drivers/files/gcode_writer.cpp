@@ -36,7 +36,7 @@ std::string with_point(std::int64_t value, int places) {
   return text;
 }
 
-// A % would end the program, a parenthesis the comment.
+// A % would end the program, a parenthesis the comment, and a ; is how some controls show a line's end.
 std::string comment(std::string_view text) {
   std::string line(1, '(');
   for (char c : text.substr(0, kLongestComment)) {
@@ -121,7 +121,7 @@ void write_gcode(const ToolPath& path, std::ostream& out, const GcodeHeader& hea
   check_moves(path);
   out << "%\n" << comment(header.name);
   for (const std::string& remark : header.remarks) out << comment(remark);
-  out << comment("millimetres, feed in mm/min, spindle in rpm; feed and spindle speed are set segment by segment")
+  out << comment("millimetres, feed in mm/min, spindle in rpm. Feed and spindle speed are set segment by segment")
       << "G21 G17 G90 G94\nG40 G49 G80\n";
   WordWriter words(out);
   const auto turning = std::find_if(path.moves.begin(), path.moves.end(), [](const PathMove& move) {

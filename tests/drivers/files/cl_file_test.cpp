@@ -89,6 +89,15 @@ TEST(ClFile, EachToolPathBeginsWithoutCutting) {
   EXPECT_EQ(path.moves[2].tool_axis, Eigen::Vector3d::UnitZ());
 }
 
+TEST(ClFile, FromOnTheWayIsReachedWithoutCutting) {
+  const ToolPath path = cutter_locations(kClStart + "GOTO/1,0,0\nRAPID\nFROM/5,0,0\nGOTO/6,0,0\nGOTO/7,0,0\n");
+  ASSERT_EQ(path.moves.size(), 4U);
+  EXPECT_FALSE(path.moves[1].cutting);
+  EXPECT_EQ(path.moves[2].from, path.moves[1].to);
+  EXPECT_FALSE(path.moves[2].cutting);  // RAPID waits for the next motion
+  EXPECT_TRUE(path.moves[3].cutting);
+}
+
 TEST(ClFile, JoinsContinuedLinesAndSkipsComments) {
   const ToolPath path = cutter_locations("$$ comment, GOTO/1\n" + kClStart +
                                          "GOTO/1,$ to be continued\n 2,$\r\n\t3 $$ done\n\nGOTO/2,2,3\n");
@@ -141,7 +150,7 @@ TEST(ClFile, RefusesWithFileLineWordAndWhatToDo) {
       {"GOTO/1,2,3,0,0,inf", "GOTO: \"INF\" is no number"},
       {"GOTO/1,-1e6,3", "Y: lies beyond 100 m"},
       {"GODLTA/5", "GODLTA: has 1 items; give dx,dy,dz"},
-      {"TOOL PATH/B\nGODLTA/1,0,0", ""},
+      {"TOOL PATH/B\nGODLTA/1,0,0", "GODLTA: a step before the position is known; begin with FROM or GOTO"},
       {"FEDRAT/0", "FEDRAT: a feed must be above 0"},
       {"FEDRAT/MMPM", "FEDRAT: a feed must be above 0"},
       {"FEDRAT/MMPM,-1", "FEDRAT: a feed must be above 0"},
@@ -153,7 +162,7 @@ TEST(ClFile, RefusesWithFileLineWordAndWhatToDo) {
       {"UNITS/CM", "UNITS: is not known; give UNITS/MM or UNITS/INCHES"},
       {"UNITS", "UNITS: is not known"},
       {"MULTAX/MAYBE", "MULTAX: is not known; give MULTAX/ON or MULTAX/OFF"},
-      {"SPINDL/OFF\nGOTO/1,0,0", ""},
+      {"SPINDL/OFF\nGOTO/1,0,0", "a feed move while the spindle stands still; start the spindle before it"},
   };
   for (const ClCase& c : cases) {
     const std::string message = cl_error(kClStart + c.line + "\nGOTO/5,0,0\n");
@@ -162,6 +171,7 @@ TEST(ClFile, RefusesWithFileLineWordAndWhatToDo) {
     EXPECT_LT(message.size(), 220U);
   }
   EXPECT_TRUE(cl_error(kClStart + "GOTO/1,2,$").starts_with("p.cls:4: the file ends where $ announces a further line"));
+  EXPECT_TRUE(cl_error(kClStart + "PAINT/" + std::string(2000, ',')).starts_with("p.cls:4: more than 1000 items"));
   std::string endless = "GOTO/1";
   for (int i = 0; i < 200; ++i) endless += ",$\n1";
   EXPECT_TRUE(cl_error(kClStart + endless).starts_with("p.cls:4: more than 100 lines in one statement"));

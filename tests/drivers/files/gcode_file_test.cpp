@@ -180,6 +180,9 @@ TEST(GcodeFile, RefusesWithFileLineWordAndWhatToDo) {
   }
   EXPECT_TRUE(
       gcode_error(kGcodeStart + "G1 X1" + std::string(400, '0') + "\n").starts_with("p.nc:4: X100000000000000"));
+  std::string words;
+  for (int i = 0; i < 101; ++i) words += "M8";
+  EXPECT_EQ(gcode_error(kGcodeStart + words), "p.nc:4: more than 100 words in one line; is it G-code?");
 }
 
 TEST(GcodeFile, RefusesMovesBeforeTheyAreSaid) {

@@ -59,7 +59,7 @@ TEST(GcodeWriter, WritesOnlyTheWordsThatChange) {
   const GcodeHeader header{"zig 45 (best)", {"ASI 96.5 %"}, {{1, "row 1"}, {2, "row 2; faster"}, {4, "never"}}};
   EXPECT_EQ(written(written_example(), header),
             "%\n(zig 45 [best])\n(ASI 96.5  )\n"
-            "(millimetres, feed in mm/min, spindle in rpm  feed and spindle speed are set segment by segment)\n"
+            "(millimetres, feed in mm/min, spindle in rpm. Feed and spindle speed are set segment by segment)\n"
             "G21 G17 G90 G94\nG40 G49 G80\nS3330 M3\nG0 X0. Y0.\nZ5.\nG1 Z-0.5 F200.\n(row 1)\nX120.25 F333.\n"
             "(row 2  faster)\nY30.0001 F342.25 S3420\nG0 Z5.\nM5\nM30\n%\n");
 }

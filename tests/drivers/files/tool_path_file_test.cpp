@@ -31,6 +31,10 @@ TEST(ToolPathFile, EndingChooses) {
             }).find("b.nc:1: G is followed by no number"),
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] {
+              (void)read_tool_path(folder.write("b.cls", kShortGcode));
+            }).find("b.cls:1: G0 X0 Y0 Z0: is not known"),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] {
               (void)read_tool_path(folder.write("b.mpf", kShortGcode));
             }).find("b.mpf: is a Sinumerik program, which is not read; post G-code"),
             std::string::npos);
