@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace stillcut {
@@ -38,7 +39,9 @@ struct LobeDiagram {
   int point_count = 0;
   int mode_count = 0;
   int direction_count = 0;
-  double direction_speed = 0.0;                // rad/s, that the limits over direction are for
+  double direction_speed = 0.0;  // rad/s, that the limits over direction are for
+  // rad, either sense: where the feed map would have the feed go at this place; NaN: it says nothing
+  double planned_direction = std::numeric_limits<double>::quiet_NaN();
   double speed_scatter = 0.0;                  // relative standard deviation of the speeds at which the lobes lie
   double depth_scatter = 0.0;                  // relative standard deviation of the limits
   std::array<LobePoint, kMaxPoints> points{};  // equally spaced over the spindle's range, rising speed

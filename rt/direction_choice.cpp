@@ -40,23 +40,36 @@ DirectionChoice choose_direction(const DirectionQuestion& q, const CompensationL
   const auto margin_towards = [&](double direction) {
     return depth_limit_towards(lobes, direction) / q.axial_depth - 1.0;
   };
-  best.margin_before = margin_towards(q.direction);
-  if (std::isnan(best.margin_before)) return best;
+  const double margin_before = margin_towards(q.direction);
+  if (std::isnan(margin_before)) return best;
+  best.margin_before = margin_before;
+  const auto candidate = [&](double direction) {
+    DirectionChoice choice;
+    choice.margin_before = margin_before;
+    choice.direction = direction;
+    choice.margin_after = margin_towards(direction);
+    choice.stable = (1.0 + choice.margin_after) * (1.0 - lobes.depth_scatter) > 1.0;
+    choice.found =
+        !(std::abs(direction - q.direction) < kLeastTurn) && choice.margin_after > margin_before + kLeastGainOfTurn;
+    return choice;
+  };
+  // The planned direction in the sense that is nearer to the program's.
+  const double planned = std::remainder(lobes.planned_direction - q.programmed_direction, kHalfTurn);
+  if (std::abs(planned) <= limits.free_turn) {
+    const DirectionChoice choice = candidate(q.programmed_direction + planned);
+    if (choice.found && choice.stable) return choice;
+  }
   const int steps = static_cast<int>(limits.free_turn / deg_to_rad(kStepDegrees));
   double nearest = kInfinity;
   for (int i = -steps; i <= steps; ++i) {
-    const double direction = q.programmed_direction + i * deg_to_rad(kStepDegrees);
-    const double turn = std::abs(direction - q.direction);
-    const double margin = margin_towards(direction);
-    const bool stable = (1.0 + margin) * (1.0 - lobes.depth_scatter) > 1.0;
-    if (turn < kLeastTurn || !(margin > best.margin_before + kLeastGainOfTurn)) continue;
-    const bool improves = !best.found || (stable && !best.stable) ||
-                          (stable == best.stable && (stable ? turn < nearest : margin > best.margin_after));
+    const DirectionChoice choice = candidate(q.programmed_direction + i * deg_to_rad(kStepDegrees));
+    if (!choice.found) continue;
+    const double turn = std::abs(choice.direction - q.direction);
+    const bool improves =
+        !best.found || (choice.stable && !best.stable) ||
+        (choice.stable == best.stable && (choice.stable ? turn < nearest : choice.margin_after > best.margin_after));
     if (!improves) continue;
-    best.found = true;
-    best.stable = stable;
-    best.direction = direction;
-    best.margin_after = margin;
+    best = choice;
     nearest = turn;
   }
   return best;

@@ -26,7 +26,8 @@ struct DirectionChoice {
 // Limit at a direction (rad), m: the smaller of the two beside it; NaN without limits over direction.
 [[nodiscard]] double depth_limit_towards(const LobeDiagram& diagram, double direction) noexcept;
 
-// The nearest direction predicted stable, else the one predicted best if it is better than the present one. Nothing
+// The direction of the feed map, where it is within the freedom, predicted stable and better than the present one; else
+// the nearest direction predicted stable, else the one predicted best if it is better than the present one. Nothing
 // without limits over direction, or where these are for a speed too far from `speed`.
 [[nodiscard]] DirectionChoice choose_direction(const DirectionQuestion& question,
                                                const CompensationLimits& limits) noexcept;

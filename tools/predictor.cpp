@@ -53,6 +53,7 @@ Predictor::Predictor(const Cell& cell) : cell_file_{cell.file.string()} {
   interpolation_ = dynamics.interpolation;
   posture_ = posture_of(cell, map_);
   directions_asked_ = cell.compensation.limits.free_turn > 0.0;
+  if (!cell.compensation.feed_map.empty()) feed_map_ = read_feed_map(cell.compensation.feed_map);
   // Superposed responses would have to be fitted at every posture first, which takes too long at start.
   if (interpolation_.kind != InterpolationKind::frf)
     map_scatter_ = left_out_scatter(map_, interpolation_).value_or(ModalScatter{});
@@ -134,6 +135,7 @@ std::optional<LobeDiagram> Predictor::at_place(const Posture& posture, double fe
     LobeDiagram diagram = compute(predicted, cut);
     const bool in_range = directions_at_speed >= spindle_.min_speed && directions_at_speed <= spindle_.max_speed;
     if (directions_asked_ && in_range) add_directions(predicted.posture.modes, cut, directions_at_speed, diagram);
+    diagram.planned_direction = planned_direction(feed_map_, posture.position[0], posture.position[1]);
     return diagram;
   } catch (const std::invalid_argument&) {
     return std::nullopt;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/files/cell.hpp"
+#include "drivers/files/feed_map_file.hpp"
 #include "models/confidence.hpp"
 #include "models/dynamics_map.hpp"
 #include "models/interpolation.hpp"
@@ -77,7 +78,8 @@ class Predictor {
   DynamicsMap map_;
   Interpolation interpolation_;
   Posture posture_;
-  bool directions_asked_ = false;           // the path leaves the feed direction free
+  bool directions_asked_ = false;  // the path leaves the feed direction free
+  FeedMap feed_map_;
   ModalScatter map_scatter_;                // between postures
   std::optional<RobotState> computed_for_;  // the state that last_ belongs to
   LobeDiagram last_;

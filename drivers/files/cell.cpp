@@ -23,7 +23,7 @@ Cell read_cell(const std::filesystem::path& file, const CellNeeds& needs) {
   if (auto section = root.table("lcm")) cell.lcm_url = read_lcm_url(*section, cell.lcm_url);
   if (auto section = root.table("runtime")) cell.mode = read_runtime_mode(*section);
   if (auto section = root.table("monitor")) cell.detection = read_detection(*section);
-  if (auto section = root.table("compensation")) cell.compensation = read_compensation(*section);
+  if (auto section = root.table("compensation")) cell.compensation = read_compensation(*section, folder);
   if (auto section = root.table("recording")) cell.recording = read_recording(*section, folder);
   root.finish();
   return cell;

@@ -53,6 +53,7 @@ struct DetectionSettings {
 struct CompensationSettings {
   CompensationLimits limits;
   double min_cutting_speed = 0.0, max_cutting_speed = kInfinity;  // m/s, the tool's window
+  std::filesystem::path feed_map;  // absolute: which way to feed where (feed_map_file.hpp); empty: none
 };
 
 // Where and how much the daemon records (tools/recorder.hpp).

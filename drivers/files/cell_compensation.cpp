@@ -33,7 +33,7 @@ void read_avoided(TomlSection& section, CompensationLimits& limits) {
 
 }  // namespace
 
-CompensationSettings read_compensation(TomlSection section) {
+CompensationSettings read_compensation(TomlSection section, const std::filesystem::path& folder) {
   CompensationSettings settings;
   CompensationLimits& limits = settings.limits;
   limits.spindle_time_constant_s =
@@ -55,6 +55,14 @@ CompensationSettings read_compensation(TomlSection section) {
   limits.max_variation = section.number("max_speed_variation", from(0, 0.5), limits.max_variation);
   limits.max_variation_hz = section.number("max_speed_variation_hz", above(0, 100), limits.max_variation_hz);
   limits.may_stop = section.truth("stop_request", limits.may_stop);
+  if (section.has("feed_map")) {
+    settings.feed_map = absolute_path(folder, section.text("feed_map"));
+    check_file(section, "feed_map", settings.feed_map);
+    if (limits.free_turn == 0.0)
+      section.fail("feed_map",
+                   "has no use while the path leaves the feed direction no freedom; set free_feed_turn_deg "
+                   "above 0, or leave it out");
+  }
   section.finish();
   return settings;
 }

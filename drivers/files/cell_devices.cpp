@@ -12,16 +12,6 @@ constexpr double kStandardGravity = 9.80665;  // m/s^2
 constexpr Bounds kDetectionLimit = from(4.0, 400.0), kReleaseRatio = from(0.05, 0.9);
 constexpr std::size_t kLongestInterfaceName = 15;  // IFNAMSIZ - 1
 
-std::filesystem::path absolute_path(const std::filesystem::path& folder, const std::string& path) {
-  return (folder / path).lexically_normal();
-}
-
-void check_file(const TomlSection& section, std::string_view key, const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) section.fail(key, "no file " + file.string() + "; correct the path");
-  if (std::filesystem::is_directory(file, error)) section.fail(key, file.string() + " is a folder; name a file in it");
-}
-
 // "Message.Signal" with names as a DBC has them; the signal's may hold one {a..b} where it lists the samples in a
 // frame.
 bool is_signal(std::string_view text, bool lists_samples) {
@@ -121,6 +111,16 @@ std::string read_posture(TomlSection& section) {
 }
 
 }  // namespace
+
+std::filesystem::path absolute_path(const std::filesystem::path& folder, const std::string& path) {
+  return (folder / path).lexically_normal();
+}
+
+void check_file(const TomlSection& section, std::string_view key, const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) section.fail(key, "no file " + file.string() + "; correct the path");
+  if (std::filesystem::is_directory(file, error)) section.fail(key, file.string() + " is a folder; name a file in it");
+}
 
 DynamicsSettings read_dynamics(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs) {
   DynamicsSettings dynamics;

@@ -23,8 +23,12 @@ std::string read_lcm_url(TomlSection section, const std::string& fallback);
 RuntimeMode read_runtime_mode(TomlSection section);
 DetectionSettings read_detection(TomlSection section);
 
+// A file's name from the folder, and the error where a key names none (cell_devices.cpp).
+std::filesystem::path absolute_path(const std::filesystem::path& folder, const std::string& path);
+void check_file(const TomlSection& section, std::string_view key, const std::filesystem::path& file);
+
 // Corrections (cell_compensation.cpp).
-CompensationSettings read_compensation(TomlSection section);
+CompensationSettings read_compensation(TomlSection section, const std::filesystem::path& folder);
 
 // What is recorded (cell_recording.cpp).
 RecordingSettings read_recording(TomlSection section, const std::filesystem::path& folder);

@@ -156,6 +156,34 @@ TEST(DirectionChoice, TheEndOfTheFreedomBelongsToIt) {
   }
 }
 
+// What the feed map plans is taken before a nearer direction, in the sense that the program has, where it is stable and
+// free; otherwise it is as if there were no map.
+TEST(DirectionChoice, ThePlannedDirectionGoesFirstWhereItIsStableAndFree) {
+  const double speed = rpm_to_rad_s(9000);
+  std::vector<double> limits(18, 2.0);
+  limits[0] = 0.5;  // along X it chatters
+  limits[7] = 0.6;
+  LobeDiagram d = diagram_over_directions(limits, speed);
+  CompensationLimits free;
+  free.free_turn = deg_to_rad(80.0);
+  const double program = deg_to_rad(180.0);
+  const auto chosen = [&](double planned_deg) {
+    d.planned_direction = deg_to_rad(planned_deg);
+    return choose_direction({program, program, speed, 1e-3, &d}, free);
+  };
+  const DirectionChoice without = choose_direction({program, program, speed, 1e-3, &d}, free);
+  for (const double planned : {40.0, 220.0, -140.0, 400.0}) {
+    const DirectionChoice choice = chosen(planned);
+    ASSERT_TRUE(choice.found && choice.stable) << planned;
+    EXPECT_NEAR(rad_to_deg(choice.direction), 220.0, 1e-9) << planned;
+    EXPECT_NEAR(choice.margin_after, 1.0, 1e-12);
+  }
+  for (const double unusable :
+       {70.0, 90.0, 0.0, 2.0, static_cast<double>(kNaN)}) {  // unstable, not free, no turn, none
+    EXPECT_EQ(chosen(unusable).direction, without.direction) << unusable;
+  }
+}
+
 TEST(DirectionChoice, WithoutFreedomDepthOrLimitsThereIsNone) {
   const double speed = rpm_to_rad_s(9000);
   const LobeDiagram d = diagram_over_directions({0.5, 2, 2, 2, 2, 2}, speed), none = diagram_over_directions({}, speed);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "drivers/files/dynamics_map_file.hpp"
 #include "models/lobes.hpp"
@@ -174,6 +176,26 @@ TEST_F(PredictorPath, ScatterIsSmallAtAMeasuredPostureAndGrowsBetweenTwo) {
   const LobeDiagram other = predictor.at(robot_at(1.0)).value();
   EXPECT_NEAR(other.speed_scatter, measured.speed_scatter, 1e-9);
   EXPECT_NEAR(other.depth_scatter, measured.depth_scatter, 1e-9);
+}
+
+// The feed map's word for the place of the robot goes with the diagram, and only as far as its places reach.
+TEST_F(PredictorPath, TheFeedMapSaysWhereToFeedNearItsPlaces) {
+  EXPECT_TRUE(std::isnan(Predictor{cell_}.at(robot_at(0.0))->planned_direction));
+  const RobotState first = robot_at(0.0), second = robot_at(1.0);
+  const std::filesystem::path file = std::filesystem::path{testing::TempDir()} / "feed_map.csv";
+  std::ofstream{file} << "x_mm,y_mm,feed_direction_deg\n"
+                      << 1e3 * first.tcp_position[0] << ',' << 1e3 * first.tcp_position[1] << ",35\n"
+                      << 1e3 * second.tcp_position[0] << ',' << 1e3 * second.tcp_position[1] << ",120\n";
+  cell_.compensation.limits.free_turn = 0.5;
+  cell_.compensation.feed_map = file;
+  Predictor predictor{cell_};
+  EXPECT_NEAR(rad_to_deg(predictor.at(robot_at(0.1))->planned_direction), 35.0, 1e-9);
+  EXPECT_NEAR(rad_to_deg(predictor.at(robot_at(0.9))->planned_direction), 120.0, 1e-9);
+  RobotState beside = first;
+  const double apart =
+      std::hypot(second.tcp_position[0] - first.tcp_position[0], second.tcp_position[1] - first.tcp_position[1]);
+  beside.tcp_position[0] -= 1.01 * std::copysign(apart, second.tcp_position[0] - first.tcp_position[0]);
+  EXPECT_TRUE(std::isnan(predictor.at(beside)->planned_direction));
 }
 
 }  // namespace

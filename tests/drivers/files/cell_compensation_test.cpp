@@ -121,6 +121,8 @@ const std::vector<WrongKey> kWrongKeys{
     {"feed_override_per_s = 0", "feed_override_per_s", "0 is out of range"},
     {"free_feed_turn_deg = -1", "free_feed_turn_deg", "-1 is out of range; give a number from 0"},
     {"free_feed_turn_deg = 181", "free_feed_turn_deg", "181 is out of range"},
+    {"feed_map = \"nowhere.csv\"", "feed_map", "no file"},
+    {"feed_map = \"cell.dbc\"", "feed_map", "set free_feed_turn_deg above 0"},
     {"turn_rate_deg_per_s = 0", "turn_rate_deg_per_s", "0 is out of range"},
     {"max_speed_variation = 0.51", "max_speed_variation", "0.51 is out of range"},
     {"max_speed_variation_hz = 0", "max_speed_variation_hz", "0 is out of range"},
