@@ -13,7 +13,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kMostSteps = 10'000;     // across the region
+constexpr double kMostPasses = 10'000;    // across the region
 constexpr double kStraight = 1e-7;        // m, off a line that is still straight
 constexpr double kLongestLink = 2.0;      // tool diameters: more is faster through the air
 constexpr double kSamePlace = 1e-9;       // m
@@ -40,14 +40,12 @@ void check(const Region& region, double angle, const PatternSettings& settings) 
   if (!std::isfinite(angle)) throw std::invalid_argument("the pattern's angle is no number; give it in degrees");
   Eigen::Vector2d low = region.polygon.front(), high = low;
   for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
-  if ((high - low).maxCoeff() > kMostSteps * settings.step_over)
+  if ((high - low).maxCoeff() > kMostPasses * settings.step_over)
     throw std::invalid_argument("a step over of " + length_in_mm(settings.step_over) +
                                 " makes more than 10000 passes; give a larger one");
 }
 
-PlanePieces pieces_to_machine(const Region& region, const PatternSettings& settings) {
-  PlanePieces pieces = tool_centre_pieces(region, settings.tool_radius, settings.face);
-  if (!pieces.empty()) return pieces;
+[[noreturn]] void refuse_tool(const Region& region, const PatternSettings& settings) {
   double fits = 0.0, too_large = settings.tool_radius;
   while (too_large - fits > kWidthTolerance * settings.tool_radius) {
     const double middle = 0.5 * (fits + too_large);
@@ -76,20 +74,6 @@ Contour without_straight_points(const Contour& points) {
   return result;
 }
 
-PlanePieces in_window(PlanePieces pieces, const Region& region, const PatternWindow& window) {
-  const PatternWindow everything;
-  if (window.x_begin == everything.x_begin && window.x_end == everything.x_end &&
-      window.y_begin == everything.y_begin && window.y_end == everything.y_end)
-    return pieces;
-  Eigen::Vector2d low = region.polygon.front(), high = low;
-  for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
-  const double left = std::max(window.x_begin, low.x()), right = std::min(window.x_end, high.x());
-  const double bottom = std::max(window.y_begin, low.y()), top = std::min(window.y_end, high.y());
-  if (!(left < right && bottom < top)) return {};
-  const PlanePiece frame{{{left, bottom}, {right, bottom}, {right, top}, {left, top}}, {}};
-  return common_to(pieces, std::span(&frame, 1));
-}
-
 // Puts passes end to end: a link where the tool may stay down, otherwise up, across and down.
 class PatternWriter {
  public:
@@ -110,9 +94,7 @@ class PatternWriter {
     for (const Eigen::Vector2d& point : points) move(down(point), true, pass.milling);
   }
 
-  void finish() {
-    if (!path.moves.empty()) move(above(at_.head<2>()), false, std::nullopt);
-  }
+  void finish() { move(above(at_.head<2>()), false, std::nullopt); }
 
   ToolPath path;
 
@@ -162,9 +144,9 @@ std::string pattern_name(PatternKind kind, double angle) {
 }
 
 ToolPath make_pattern(const Region& given, PatternKind kind, double angle, const PatternSettings& settings) {
-  const Region region = checked(given);
+  const Region region = checked_region(given);
   check(region, angle, settings);
-  const PlanePieces pieces = in_window(pieces_to_machine(region, settings), region, settings.window);
+  const PlanePieces pieces = tool_centre_pieces(region, settings.tool_radius, settings.face);
 
   struct Placed {
     PatternPass pass;
@@ -187,6 +169,7 @@ ToolPath make_pattern(const Region& given, PatternKind kind, double angle, const
     if (!placed.empty()) at = placed.back().pass.points.back();
     left.erase(next);
   }
+  if (placed.empty()) refuse_tool(region, settings);
   // What goes inward with uncut material inside goes outward, taken backward, with it outside, on the same hand.
   if (!lines(kind) && !inward(kind)) {
     std::reverse(placed.begin(), placed.end());

@@ -2,19 +2,12 @@
 // spindle that turns clockwise seen from above: in down milling what is not cut yet lies to the right of the travel.
 #pragma once
 
-#include <limits>
 #include <string>
 
 #include "models/region.hpp"
 #include "models/tool_path.hpp"
 
 namespace stillcut {
-
-// A part of the plane, up to infinity where it has no border, m.
-struct PatternWindow {
-  double x_begin = -std::numeric_limits<double>::infinity(), x_end = std::numeric_limits<double>::infinity();
-  double y_begin = x_begin, y_end = x_end;
-};
 
 enum class PatternKind { zig, zig_zag, periphery_in, periphery_out, spiral_in, spiral_out };
 
@@ -25,7 +18,6 @@ struct PatternSettings {
   double clearance = 5e-3;          // m, above z: where rapid moves go
   Milling milling = Milling::down;  // or up
   bool face = false;                // the tool's centre goes up to the polygon, so that the tool overhangs it
-  PatternWindow window{};           // only where the tool's centre is in it; a path without moves where that is nowhere
 };
 
 // The path that fills the region. Each piece that the tool's centre can stay in is machined after the other.

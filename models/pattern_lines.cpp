@@ -66,8 +66,9 @@ void add_line_through(const PlanePiece& gap, const PlanePiece& piece, std::vecto
 void fill_gaps(const PlanePiece& piece, double radius, std::vector<PatternLine>& lines) {
   for (int round = 0; round < kMostGapRounds; ++round) {
     std::vector<Contour> ways;
+    ways.reserve(lines.size());
     for (const PatternLine& line : lines) ways.push_back({{line.begin, line.y}, {line.end, line.y}});
-    const PlanePieces gaps = without(std::span(&piece, 1), swept_by_disc(ways, radius + kLeastWidth));
+    const PlanePieces gaps = subtracted(std::span(&piece, 1), swept_by_disc(ways, radius + 2.0 * kLeastWidth));
     const std::size_t before = lines.size();
     for (const PlanePiece& gap : gaps) add_line_through(gap, piece, lines);
     if (lines.size() == before) return;

@@ -35,7 +35,7 @@ void add_rests(std::vector<LoopLevel>& levels, double radius) {
   for (std::size_t i = 0; i < count; ++i) {
     PlanePieces inner;
     for (const std::size_t child : levels[i].children) inner.push_back(levels[child].piece);
-    for (PlanePiece& rest : without(shrunk(std::span(&levels[i].piece, 1), radius), grown(inner, radius))) {
+    for (PlanePiece& rest : subtracted(shrunk(std::span(&levels[i].piece, 1), radius), grown(inner, radius))) {
       levels[i].children.push_back(levels.size());
       levels.push_back({std::move(rest), {}});
     }
@@ -81,10 +81,6 @@ class LoopWriter {
       chain.push_back(child);
     }
     std::vector<Contour> lines = through(chain);
-    while (chain.size() > 1 && !covered(chain, lines)) {
-      chain.resize(chain.size() / 2);
-      lines = through(chain);
-    }
     at_ = lines.back().back();
     for (Contour& line : lines) passes.push_back({std::move(line), settings_.milling});
 
@@ -118,13 +114,6 @@ class LoopWriter {
           sequences, lines.back().back(), [](const auto& loops) -> auto& { return loops.front(); });
     }
     return lines;
-  }
-
-  // Whether nothing stays that the loops themselves would cut: where turns take a corner on the inside, it may.
-  [[nodiscard]] bool covered(const std::vector<std::size_t>& chain, const std::vector<Contour>& lines) const {
-    const PlanePieces band =
-        without(std::span(&levels_[chain.front()].piece, 1), std::span(&levels_[chain.back()].piece, 1));
-    return without(band, swept_by_disc(lines, settings_.tool_radius + kLeastWidth)).empty();
   }
 
   std::vector<LoopLevel> levels_;

@@ -8,7 +8,9 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPieceGrain = 1e-9;   // m, of Clipper's whole numbers
+constexpr double kPieceGrain = 1e-9;  // m, of Clipper's whole numbers
+// Clipper's last chord of an arc may be half as long again as the others, and so leaves the arc by 2.25 times as much.
+constexpr double kClipperTolerance = kChordTolerance / 2.25;
 constexpr double kBesidePiece = 1e-6;  // m, outside but counted as on the edge
 
 ClipperLib::Path on_piece_grid(const Contour& contour) {
@@ -61,7 +63,7 @@ PlanePieces gathered(const ClipperLib::PolyTree& tree) {
 }
 
 PlanePieces offset(std::span<const Contour> contours, double distance, ClipperLib::EndType end) {
-  ClipperLib::ClipperOffset clipper(2.0, kChordTolerance / kPieceGrain);
+  ClipperLib::ClipperOffset clipper(2.0, kClipperTolerance / kPieceGrain);
   for (const Contour& contour : contours) clipper.AddPath(on_piece_grid(contour), ClipperLib::jtRound, end);
   ClipperLib::PolyTree tree;
   clipper.Execute(tree, distance / kPieceGrain);
@@ -73,16 +75,6 @@ std::vector<Contour> all_contours(std::span<const PlanePiece> pieces) {
   for (const PlanePiece& piece : pieces)
     for (Contour& contour : contours_of(piece)) all.push_back(std::move(contour));
   return all;
-}
-
-PlanePieces clipped(ClipperLib::ClipType kind, std::span<const PlanePiece> pieces, std::span<const PlanePiece> by) {
-  ClipperLib::Clipper clipper;
-  for (const Contour& contour : all_contours(pieces))
-    clipper.AddPath(on_piece_grid(contour), ClipperLib::ptSubject, true);
-  for (const Contour& contour : all_contours(by)) clipper.AddPath(on_piece_grid(contour), ClipperLib::ptClip, true);
-  ClipperLib::PolyTree tree;
-  clipper.Execute(kind, tree, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-  return gathered(tree);
 }
 
 template <typename Each>
@@ -121,12 +113,14 @@ PlanePieces swept_by_disc(std::span<const Contour> lines, double radius) {
   return offset(lines, radius, ClipperLib::etOpenRound);
 }
 
-PlanePieces without(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken) {
-  return clipped(ClipperLib::ctDifference, pieces, taken);
-}
-
-PlanePieces common_to(std::span<const PlanePiece> pieces, std::span<const PlanePiece> others) {
-  return clipped(ClipperLib::ctIntersection, pieces, others);
+PlanePieces subtracted(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken) {
+  ClipperLib::Clipper clipper;
+  for (const Contour& contour : all_contours(pieces))
+    clipper.AddPath(on_piece_grid(contour), ClipperLib::ptSubject, true);
+  for (const Contour& contour : all_contours(taken)) clipper.AddPath(on_piece_grid(contour), ClipperLib::ptClip, true);
+  ClipperLib::PolyTree tree;
+  clipper.Execute(ClipperLib::ctDifference, tree, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
+  return gathered(tree);
 }
 
 PlanePieces tool_centre_pieces(const Region& region, double radius, bool overhang) {
@@ -136,7 +130,7 @@ PlanePieces tool_centre_pieces(const Region& region, double radius, bool overhan
   for (const Contour& island : region.islands)
     for (PlanePiece& piece : offset(std::span(&island, 1), radius, ClipperLib::etClosedPolygon))
       islands.push_back({std::move(piece.outer), {}});  // what an island encloses is its own
-  return without(inside, islands);
+  return subtracted(inside, islands);
 }
 
 bool encloses(const PlanePiece& piece, const Eigen::Vector2d& point) {

@@ -20,7 +20,7 @@ struct PlanePiece {
 using PlanePieces = std::vector<PlanePiece>;
 
 // How far a chord may leave the arc that it stands for, m.
-inline constexpr double kChordTolerance = 5e-6;
+inline constexpr double kChordTolerance = 10e-6;
 // What is narrower, m, is none: rounding leaves or takes it.
 inline constexpr double kLeastWidth = 10e-6;
 
@@ -34,9 +34,7 @@ PlanePieces shrunk(std::span<const PlanePiece> pieces, double distance);
 // What is within a distance, m, of the pieces.
 PlanePieces grown(std::span<const PlanePiece> pieces, double distance);
 
-PlanePieces without(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken);
-
-PlanePieces common_to(std::span<const PlanePiece> pieces, std::span<const PlanePiece> others);
+PlanePieces subtracted(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken);
 
 // What a disc covers that goes along open lines.
 PlanePieces swept_by_disc(std::span<const Contour> lines, double radius);

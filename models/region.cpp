@@ -185,7 +185,7 @@ std::optional<std::string> islands_fault(const Region& region) {
   return std::nullopt;
 }
 
-Region checked(const Region& region) {
+Region checked_region(const Region& region) {
   if (const auto fault = polygon_fault(region.polygon)) throw std::invalid_argument(*fault);
   if (const auto fault = islands_fault(region)) throw std::invalid_argument(*fault);
   Region result{without_repeats(region.polygon), {}};

@@ -29,6 +29,6 @@ std::optional<std::string> polygon_fault(const Contour& polygon);
 std::optional<std::string> islands_fault(const Region& region);
 
 // The region without repeated points. Throws std::invalid_argument with the fault.
-Region checked(const Region& region);
+Region checked_region(const Region& region);
 
 }  // namespace stillcut

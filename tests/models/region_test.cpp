@@ -31,7 +31,7 @@ TEST(Region, TakesWhatIsHarmless) {
   // Closed by its first point, with a point twice and points along an edge.
   const Contour closed = mm({{0, 0}, {100, 0}, {200, 0}, {300, 0}, {300, 0}, {300, 300}, {0, 300}, {0, 150}, {0, 0}});
   EXPECT_EQ(fault_of(closed), "");
-  EXPECT_EQ(checked({closed, {}}).polygon.size(), 7U);
+  EXPECT_EQ(checked_region({closed, {}}).polygon.size(), 7U);
   EXPECT_EQ(fault_of_islands({mm({{10, 10}, {20, 10}, {20, 20}}), mm({{22, 10}, {30, 10}, {22, 299.999}})}), "");
 }
 
@@ -68,7 +68,7 @@ TEST(Region, SaysWhatIsWrongWithTheIslandsAndWhere) {
             "island 1 lies within island 2, at (12, 12) mm; leave it out");
   EXPECT_EQ(fault_of_islands({small, mm({{-50, -50}, {400, -50}, {400, 400}, {-50, 400}})}),
             "island 2 lies outside the polygon, at (-50, -50) mm; move it inside or leave it out");
-  EXPECT_THROW(checked({kPlate, {small, small}}), std::invalid_argument);
+  EXPECT_THROW(checked_region({kPlate, {small, small}}), std::invalid_argument);
 }
 
 // Against the plain definition: two edges of a random polygon that do not follow each other share a point.
