@@ -74,6 +74,16 @@ Contour without_straight_points(const Contour& points) {
   return result;
 }
 
+PlanePieces in_window(const PlanePieces& pieces, const Region& region, const PatternWindow& window) {
+  Eigen::Vector2d low = region.polygon.front(), high = low;
+  for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  const double left = std::max(window.x_begin, low.x()), right = std::min(window.x_end, high.x());
+  const double bottom = std::max(window.y_begin, low.y()), top = std::min(window.y_end, high.y());
+  if (!(left < right && bottom < top)) return {};
+  const PlanePiece frame{{{left, bottom}, {right, bottom}, {right, top}, {left, top}}, {}};
+  return common_to(pieces, std::span(&frame, 1));
+}
+
 // Puts passes end to end: a link where the tool may stay down, otherwise up, across and down.
 class PatternWriter {
  public:
@@ -94,7 +104,9 @@ class PatternWriter {
     for (const Eigen::Vector2d& point : points) move(down(point), true, pass.milling);
   }
 
-  void finish() { move(above(at_.head<2>()), false, std::nullopt); }
+  void finish() {
+    if (!path.moves.empty()) move(above(at_.head<2>()), false, std::nullopt);
+  }
 
   ToolPath path;
 
@@ -146,7 +158,8 @@ std::string pattern_name(PatternKind kind, double angle) {
 ToolPath make_pattern(const Region& given, PatternKind kind, double angle, const PatternSettings& settings) {
   const Region region = checked_region(given);
   check(region, angle, settings);
-  const PlanePieces pieces = tool_centre_pieces(region, settings.tool_radius, settings.face);
+  PlanePieces pieces = tool_centre_pieces(region, settings.tool_radius, settings.face);
+  if (settings.window) pieces = in_window(pieces, region, *settings.window);
 
   struct Placed {
     PatternPass pass;
@@ -169,7 +182,7 @@ ToolPath make_pattern(const Region& given, PatternKind kind, double angle, const
     if (!placed.empty()) at = placed.back().pass.points.back();
     left.erase(next);
   }
-  if (placed.empty()) refuse_tool(region, settings);
+  if (placed.empty() && !settings.window) refuse_tool(region, settings);
   // What goes inward with uncut material inside goes outward, taken backward, with it outside, on the same hand.
   if (!lines(kind) && !inward(kind)) {
     std::reverse(placed.begin(), placed.end());

@@ -77,6 +77,16 @@ std::vector<Contour> all_contours(std::span<const PlanePiece> pieces) {
   return all;
 }
 
+PlanePieces clipped(ClipperLib::ClipType kind, std::span<const PlanePiece> pieces, std::span<const PlanePiece> by) {
+  ClipperLib::Clipper clipper;
+  for (const Contour& contour : all_contours(pieces))
+    clipper.AddPath(on_piece_grid(contour), ClipperLib::ptSubject, true);
+  for (const Contour& contour : all_contours(by)) clipper.AddPath(on_piece_grid(contour), ClipperLib::ptClip, true);
+  ClipperLib::PolyTree tree;
+  clipper.Execute(kind, tree, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
+  return gathered(tree);
+}
+
 template <typename Each>
 void for_each_edge_of(const PlanePiece& piece, Each each) {
   const auto edges = [&](const Contour& contour) {
@@ -114,13 +124,11 @@ PlanePieces swept_by_disc(std::span<const Contour> lines, double radius) {
 }
 
 PlanePieces subtracted(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken) {
-  ClipperLib::Clipper clipper;
-  for (const Contour& contour : all_contours(pieces))
-    clipper.AddPath(on_piece_grid(contour), ClipperLib::ptSubject, true);
-  for (const Contour& contour : all_contours(taken)) clipper.AddPath(on_piece_grid(contour), ClipperLib::ptClip, true);
-  ClipperLib::PolyTree tree;
-  clipper.Execute(ClipperLib::ctDifference, tree, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-  return gathered(tree);
+  return clipped(ClipperLib::ctDifference, pieces, taken);
+}
+
+PlanePieces common_to(std::span<const PlanePiece> pieces, std::span<const PlanePiece> others) {
+  return clipped(ClipperLib::ctIntersection, pieces, others);
 }
 
 PlanePieces tool_centre_pieces(const Region& region, double radius, bool overhang) {

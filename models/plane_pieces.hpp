@@ -36,6 +36,8 @@ PlanePieces grown(std::span<const PlanePiece> pieces, double distance);
 
 PlanePieces subtracted(std::span<const PlanePiece> pieces, std::span<const PlanePiece> taken);
 
+PlanePieces common_to(std::span<const PlanePiece> pieces, std::span<const PlanePiece> others);
+
 // What a disc covers that goes along open lines.
 PlanePieces swept_by_disc(std::span<const Contour> lines, double radius);
 

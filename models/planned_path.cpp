@@ -38,7 +38,7 @@ ToolPath planned_path(const Region& region, const PathPlan& plan, const PatternS
   path.name = "optimized";
   for (const PlannedPatch& patch : plan.patches) {
     PatternSettings within = settings;
-    within.window = {patch.x_begin, patch.x_end, patch.y_begin, patch.y_end};
+    within.window = PatternWindow{patch.x_begin, patch.x_end, patch.y_begin, patch.y_end};
     const ToolPath lines = make_pattern(region, PatternKind::zig, patch.direction, within);
     join(path, with_speed(lines, patch.spindle_speed, conditions));
   }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "drivers/files/csv.hpp"
+#include <cstdio>
 
 namespace stillcut {
 namespace {
@@ -12,7 +11,11 @@ namespace {
 constexpr std::array<plot::Color, 6> kGroupColors{plot::kBlue,   plot::kVermilion, plot::kGreen,
                                                   plot::kPurple, plot::kOrange,    plot::kSkyBlue};
 
-std::string number(double value, double step) { return csv_number(std::round(value / step) * step); }
+std::string number(double value, int decimals) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
 
 struct Extent {
   double x_low = kInfinity, x_high = -kInfinity, y_low = kInfinity, y_high = -kInfinity;  // mm
@@ -50,14 +53,14 @@ double reach_mm(const PatternStudy& study) {
 }  // namespace
 
 plot::Figure ranking_figure(const PatternStudy& study) {
-  constexpr std::size_t kShown = 16;
+  constexpr std::size_t kLinesShown = 6;  // beside the landmarks and the other patterns: names need their room
   std::vector<const RatedPattern*> shown;
   for (const RatedPattern& pattern : study.patterns) {
     const bool line = pattern.name.rfind("zig", 0) == 0;
     const auto lines = static_cast<std::size_t>(std::count_if(
         shown.begin(), shown.end(), [](const RatedPattern* other) { return other->name.rfind("zig", 0) == 0; }));
     const bool landmark = pattern.name == "zig 0" || pattern.name == "zig 90";
-    if (!line || landmark || lines < kShown - 8) shown.push_back(&pattern);
+    if (!line || landmark || lines < kLinesShown) shown.push_back(&pattern);
   }
   plot::Panel panel;
   plot::Axis names{"", 0.4, static_cast<double>(shown.size()) + 0.6};
@@ -71,7 +74,7 @@ plot::Figure ranking_figure(const PatternStudy& study) {
     bar.opacity = 0.85;
     bar.color = shown[i]->name.rfind("zig", 0) == 0 ? plot::kBlue : plot::kOrange;
     panel.areas.push_back(bar);
-    panel.notes.push_back({middle - 0.3, value + 1.5, number(value, 0.1), plot::kInk});
+    panel.notes.push_back({middle - 0.3, value + 1.5, number(value, 1), plot::kInk});
   }
   panel.y = {"absolute stability index, %", 0.0, 112.0};
   plot::Figure figure;
@@ -79,7 +82,7 @@ plot::Figure ranking_figure(const PatternStudy& study) {
   figure.subtitle = "mean of a_abs along the pattern over a_abs of the best direction there";
   figure.x = names;
   figure.panels = {std::move(panel)};
-  figure.width = 1300;
+  figure.width = 1500;
   figure.height = 560;
   return figure;
 }
@@ -108,7 +111,7 @@ plot::Figure field_figure(const PatternStudy& study) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     groups[g].color = kGroupColors[g];
     groups[g].width = 3.0;
-    groups[g].label = "group of " + number(rad_to_deg(study.field.groups[g].direction), 0.01) + "°";
+    groups[g].label = "group of " + number(rad_to_deg(study.field.groups[g].direction), 0) + "°";
     panel.lines.push_back(groups[g]);
   }
   if (!best.x.empty()) {
@@ -128,7 +131,7 @@ plot::Figure field_figure(const PatternStudy& study) {
     add_stroke(patches, left, high, left, low);
     if (study.plan.patches.size() > 1)
       panel.notes.push_back({left + 0.02 * (extent.x_high - extent.x_low), high - 0.03 * (extent.y_high - extent.y_low),
-                             number(rad_to_deg(patch.direction), 0.01) + "°", plot::kInk});
+                             number(rad_to_deg(patch.direction), 0) + "°", plot::kInk});
   }
   panel.lines.push_back(patches);
   plot::Figure figure = plane_figure(std::move(panel), extent);
@@ -172,8 +175,8 @@ plot::Figure common_lobes_figure(const PatternStudy& study, const RatedPattern& 
   panel.y = {"axial depth, mm", 0.0, std::min(1.05 * highest, 6e3 * pocket.depth + 1e-3)};
   plot::Figure figure;
   figure.title = pattern.name + ": lobes of all locations along the path";
-  figure.subtitle = "common pocket " + number(1e3 * pocket.depth, 0.001) + " mm at " +
-                    number(rad_s_to_rpm(pocket.speed), 1.0) + " rpm";
+  figure.subtitle =
+      "common pocket " + number(1e3 * pocket.depth, 3) + " mm at " + number(rad_s_to_rpm(pocket.speed), 0) + " rpm";
   figure.x = {"spindle speed, rpm"};
   figure.panels = {std::move(panel)};
   figure.height = 620;
@@ -231,7 +234,7 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
   }
   plot::Figure figure = plane_figure(std::move(panel), extent);
   figure.title = pattern.name + ", coloured by its margin against chatter";
-  figure.subtitle = "a_lim / a − 1 at " + number(1e3 * axial_depth, 0.001) + " mm of depth";
+  figure.subtitle = "a_lim / a − 1 at " + number(1e3 * axial_depth, 3) + " mm of depth";
   return figure;
 }
 
