@@ -37,15 +37,23 @@ double bounded_pocket_depth(const DirectionCurve& curve, double max_depth) {
   return std::min(*std::max_element(curve.limits.begin(), curve.limits.end()), max_depth);
 }
 
-double best_absolute_limit(const LocationLimits& location, double max_depth) {
+double best_absolute_limit(const DirectionTable& table, const LocationLimits& location) {
   double best = 0.0;
-  for (const DirectionCurve& curve : location.curves) best = std::max(best, bounded_absolute_limit(curve, max_depth));
+  for (const double direction : table.directions)
+    best = std::max(best, bounded_absolute_limit(curve_at(location.curves, direction), table.max_depth));
   return best;
 }
 
-double stability_ratio(const LocationLimits& location, const DirectionCurve& curve, double max_depth) {
-  const double best = best_absolute_limit(location, max_depth);
-  return best > 0.0 ? std::min(bounded_absolute_limit(curve, max_depth) / best, 1.0) : kNaN;
+double best_pocket_depth(const DirectionTable& table, const LocationLimits& location) {
+  double best = 0.0;
+  for (const double direction : table.directions)
+    best = std::max(best, bounded_pocket_depth(curve_at(location.curves, direction), table.max_depth));
+  return best;
+}
+
+double stability_ratio(const DirectionTable& table, const LocationLimits& location, const DirectionCurve& curve) {
+  const double best = best_absolute_limit(table, location);
+  return best > 0.0 ? std::min(bounded_absolute_limit(curve, table.max_depth) / best, 1.0) : kNaN;
 }
 
 std::vector<double> common_limits(std::span<const DirectionCurve* const> curves, double max_depth) {

@@ -39,11 +39,12 @@ const DirectionCurve& curve_at(std::span<const DirectionCurve> curves, double di
 double bounded_absolute_limit(const DirectionCurve& curve, double max_depth);  // a_abs, m
 double bounded_pocket_depth(const DirectionCurve& curve, double max_depth);    // a_pocket, m
 
-// The highest a_abs over all directions of a location, m.
-double best_absolute_limit(const LocationLimits& location, double max_depth);
+// The highest a_abs and a_pocket over the table's directions at a location, m.
+double best_absolute_limit(const DirectionTable& table, const LocationLimits& location);
+double best_pocket_depth(const DirectionTable& table, const LocationLimits& location);
 
-// a_abs along a direction over that of the best one, 0 to 1; NaN where no direction is stable at all speeds.
-double stability_ratio(const LocationLimits& location, const DirectionCurve& curve, double max_depth);
+// a_abs of a curve over that of the best of the table's directions, at most 1; NaN where none is stable at all speeds.
+double stability_ratio(const DirectionTable& table, const LocationLimits& location, const DirectionCurve& curve);
 
 // What holds at all these curves at once: at every speed the lowest limit, at most `max_depth`.
 std::vector<double> common_limits(std::span<const DirectionCurve* const> curves, double max_depth);

@@ -99,7 +99,8 @@ PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::V
     const Eigen::Vector2d from = move.from.head<2>(), way = move.to.head<2>() - from;
     const double length = (move.to - move.from).norm();
     (move.cutting ? result.cutting_length : result.air_length) += length;
-    if (!move.cutting || way.norm() < 1e-9) continue;
+    const bool link = move.milling == Milling::slot;  // from pass to pass
+    if (!move.cutting || link || way.norm() < 1e-9) continue;
     const double direction = axis_of(std::atan2(way.y(), way.x()));
     const int pieces = std::max(1, static_cast<int>(std::ceil(way.norm() / piece)));
     for (int i = 0; i < pieces; ++i) {

@@ -30,7 +30,8 @@ double reach_of(std::span<const Eigen::Vector2d> places);
 
 // Directions within `same_direction` (rad) of one in which much is cut are taken as that one, as with the chords of an
 // arc; what makes up less than a tenth of the cutting at a location, as links from pass to pass do, is left out. Moves
-// across the plane count, plunges do not. Throws std::invalid_argument without locations.
+// across the plane count; plunges and what a path calls slotting, its links, do not. Throws std::invalid_argument
+// without locations.
 PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::Vector2d> places,
                                   double same_direction = 0.0873);
 

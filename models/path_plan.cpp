@@ -96,7 +96,7 @@ PatchPlan plan_for_absolute(const Area& area, double turning_cost) {
   for (std::size_t i = 0; i < area.count(); ++i) {
     for (std::size_t d = 0; d < table.directions.size(); ++d) {
       const double ratio =
-          stability_ratio(table.locations[area.location(i)], area.curve(i, static_cast<int>(d)), table.max_depth);
+          stability_ratio(table, table.locations[area.location(i)], area.curve(i, static_cast<int>(d)));
       if (!std::isnan(ratio)) lost[i][d] = (1.0 - ratio) / static_cast<double>(area.count());
     }
   }
@@ -243,7 +243,7 @@ PathPlan plan_path(const DirectionTable& table, std::span<const std::size_t> use
       double lost = 0.0;
       for (const std::size_t i : used) {
         const LocationLimits& location = table.locations[i];
-        const double ratio = stability_ratio(location, curve_at(location.curves, direction), table.max_depth);
+        const double ratio = stability_ratio(table, location, curve_at(location.curves, direction));
         if (!std::isnan(ratio)) lost += (1.0 - ratio) / static_cast<double>(used.size());
       }
       if (lost < result.single_cost) result.single_cost = lost, result.single_direction = direction;

@@ -40,11 +40,9 @@ PatternRating rate_path(const DirectionTable& table, const PathOnLocations& path
     const double limit = bounded_absolute_limit(*curves[i], table.max_depth);
     rating.min_absolute = std::min(rating.min_absolute, limit);
     rating.max_absolute = std::max(rating.max_absolute, limit);
-    const double ratio = stability_ratio(location, *curves[i], table.max_depth);
+    const double ratio = stability_ratio(table, location, *curves[i]);
     if (!std::isnan(ratio)) ratios += share * ratio, rated += share;
-    double best_pocket = 0.0;
-    for (const DirectionCurve& curve : location.curves)
-      best_pocket = std::max(best_pocket, bounded_pocket_depth(curve, table.max_depth));
+    const double best_pocket = best_pocket_depth(table, location);
     if (best_pocket > 0.0) {
       pocket_ratios += share * std::min(bounded_pocket_depth(*curves[i], table.max_depth) / best_pocket, 1.0);
       pockets_rated += share;

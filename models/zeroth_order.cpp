@@ -54,12 +54,29 @@ struct Sample {
   Pair eigenvalues;
 };
 
+// Over the immersion, which is the same at all frequencies. Altintas' coefficients are -2/k_tc times the integral of
+// the cutting stiffness.
+Eigen::Matrix2cd directional_coefficients(const LinearCut& cut) {
+  const Eigen::Matrix2d alpha =
+      -2.0 / cut.ktc * cutting_stiffness_integral(cut, cut.immersion.entry, cut.immersion.exit).topRows<2>();
+  return alpha.cast<Complex>();
+}
+
+Pair eigenvalues_of(const Eigen::Matrix2cd& oriented) {
+  const Complex half_trace = 0.5 * oriented.trace();
+  const Complex root = std::sqrt(half_trace * half_trace - oriented.determinant());
+  return {half_trace + root, half_trace - root};
+}
+
+// The oriented receptance's eigenvalues at a frequency, rad/s.
+using Eigenvalues = std::function<Pair(double frequency)>;
+
 // Refines the frequency between two samples at which branch `which` closes its phase at this tooth period.
 struct Crossing {
   double frequency;
   LobeBranch branch;
 };
-Crossing refine(const LinearCut& cut, const FeedReceptance& receptance, double period, int which, Sample low,
+Crossing refine(const LinearCut& cut, const Eigenvalues& eigenvalues, double period, int which, Sample low,
                 Sample high) {
   const auto index = static_cast<std::size_t>(which);
   double gap_low = wrapped_phase(low.frequency * period - lobe_branch(cut, low.eigenvalues[index]).phase);
@@ -68,7 +85,7 @@ Crossing refine(const LinearCut& cut, const FeedReceptance& receptance, double p
     Sample middle{0.5 * (low.frequency + high.frequency), {}};
     const Pair halfway{0.5 * (low.eigenvalues[0] + high.eigenvalues[0]),
                        0.5 * (low.eigenvalues[1] + high.eigenvalues[1])};
-    middle.eigenvalues = continued(oriented_eigenvalues(cut, receptance(middle.frequency)), halfway);
+    middle.eigenvalues = continued(eigenvalues(middle.frequency), halfway);
     crossing = {middle.frequency, lobe_branch(cut, middle.eigenvalues[index])};
     const double gap = wrapped_phase(middle.frequency * period - crossing.branch.phase);
     if (gap == 0.0) break;
@@ -92,13 +109,7 @@ LobeBranch lobe_branch(const LinearCut& cut, Complex oriented_eigenvalue) {
 }
 
 Pair oriented_eigenvalues(const LinearCut& cut, const Eigen::Matrix2cd& receptance) {
-  // Altintas' coefficients are -2/k_tc times the integral of the cutting stiffness.
-  const Eigen::Matrix2d alpha =
-      -2.0 / cut.ktc * cutting_stiffness_integral(cut, cut.immersion.entry, cut.immersion.exit).topRows<2>();
-  const Eigen::Matrix2cd oriented = alpha.cast<Complex>() * receptance;
-  const Complex half_trace = 0.5 * oriented.trace();
-  const Complex root = std::sqrt(half_trace * half_trace - oriented.determinant());
-  return {half_trace + root, half_trace - root};
+  return eigenvalues_of(directional_coefficients(cut) * receptance);
 }
 
 Pair oriented_eigenvalues(const LinearCut& cut, std::span<const Mode> modes, double frequency) {
@@ -121,9 +132,11 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
     if (!(speed > 0.0) || !std::isfinite(speed)) throw std::invalid_argument("spindle speed: must be positive");
     longest_period = std::max(longest_period, kTwoPi / (speed * cut.teeth));
   }
+  const Eigen::Matrix2cd alpha = directional_coefficients(cut);
+  const Eigenvalues eigenvalues = [&](double frequency) { return eigenvalues_of(alpha * receptance(frequency)); };
   std::vector<Sample> samples;
   for (const double frequency : frequency_grid(modes, longest_period)) {
-    const Pair pair = oriented_eigenvalues(cut, receptance(frequency));
+    const Pair pair = eigenvalues(frequency);
     samples.push_back({frequency, samples.empty() ? pair : continued(pair, samples.back().eigenvalues)});
   }
   std::vector<std::array<LobeBranch, 2>> branches;
@@ -145,7 +158,7 @@ std::vector<DepthLimit> zeroth_order_limits(const LinearCut& cut, std::span<cons
         const double gap_a = wrapped_phase(samples[i].frequency * period - a.phase);
         const double gap_b = wrapped_phase(samples[i + 1].frequency * period - b.phase);
         if ((gap_a < 0.0) == (gap_b < 0.0) || std::abs(gap_a - gap_b) > std::numbers::pi) continue;
-        const Crossing crossing = refine(cut, receptance, period, static_cast<int>(which), samples[i], samples[i + 1]);
+        const Crossing crossing = refine(cut, eigenvalues, period, static_cast<int>(which), samples[i], samples[i + 1]);
         if (crossing.branch.depth > 0.0 && crossing.branch.depth < limit.depth) {
           limit.depth = crossing.branch.depth;
           limit.chatter_frequency = crossing.frequency;

@@ -143,8 +143,7 @@ void collect_warnings(const Cell& cell, const std::vector<PredictedPosture>& loc
       if (told.insert(line).second) study.warnings.push_back(line);
   std::string never;
   for (const LocationLimits& location : study.table.locations)
-    if (best_absolute_limit(location, study.table.max_depth) == 0.0)
-      never += (never.empty() ? "" : ", ") + location.posture;
+    if (best_absolute_limit(study.table, location) == 0.0) never += (never.empty() ? "" : ", ") + location.posture;
   if (!never.empty()) {
     study.warnings.push_back("at some speed of [spindle] no direction is stable at any depth at " + never +
                              ": left out of the index");

@@ -31,7 +31,7 @@ double share_lost(const DirectionTable& table, const PathPlan& plan) {
   for (const PlannedPatch& patch : plan.patches) {
     for (const std::size_t i : patch.locations) {
       const LocationLimits& location = table.locations[i];
-      lost += 1.0 - stability_ratio(location, curve_at(location.curves, patch.direction), table.max_depth);
+      lost += 1.0 - stability_ratio(table, location, curve_at(location.curves, patch.direction));
     }
   }
   return lost / static_cast<double>(table.locations.size());
