@@ -13,7 +13,7 @@ namespace {
 using Neighbours = std::vector<std::vector<std::size_t>>;
 
 Neighbours neighbours_of(const DirectionTable& table) {
-  constexpr double kOfReach = 1.5;  // a square grid's diagonals are 1.41 spacings long
+  constexpr double kOfReach = 1.75;  // diagonals of grids up to 1.4 times as long as wide are within it
   std::vector<Eigen::Vector2d> places;
   for (const LocationLimits& location : table.locations) places.push_back(location.place);
   const double reach = kOfReach * reach_of(places);
@@ -64,21 +64,30 @@ Range range_of(const std::vector<double>& axes) {
   return range;
 }
 
+// An outlier lies beyond the range of its neighbours, by more than the table's step can tell. Those that were brought
+// back are neighbours to others, so it is done again until nothing moves.
 void smooth_outliers(DirectionField& field, const std::vector<double>& directions, const Neighbours& neighbours) {
+  constexpr std::size_t kFewestForARange = 3;
+  constexpr int kMostRounds = 20;
   const double step = directions.size() > 1 ? directions[1] - directions[0] : 0.0;
-  for (std::size_t i = 0; i < field.locations.size(); ++i) {
-    ChosenDirection& choice = field.locations[i];
-    if (neighbours[i].size() < 2) continue;  // one neighbour is no range
-    std::vector<double> axes;
-    for (const std::size_t j : neighbours[i]) axes.push_back(field.locations[j].best);
-    const Range range = range_of(axes);
-    const auto beyond = [&](double axis) {
-      return std::max(0.0, axis_angle(axis, range.middle) - range.half_width - 0.5 * step);
-    };
-    choice.outlier = beyond(choice.best) > 0.0;
-    if (!choice.outlier) continue;
-    for (std::size_t d = 0; d < directions.size(); ++d)
-      if (choice.near[d] && beyond(directions[d]) < beyond(choice.chosen)) choice.chosen = directions[d];
+  bool moved = true;
+  for (int round = 0; moved && round < kMostRounds; ++round) {
+    moved = false;
+    for (std::size_t i = 0; i < field.locations.size(); ++i) {
+      ChosenDirection& choice = field.locations[i];
+      if (neighbours[i].size() < kFewestForARange) continue;
+      std::vector<double> axes;
+      for (const std::size_t j : neighbours[i]) axes.push_back(field.locations[j].chosen);
+      const Range range = range_of(axes);
+      if (axis_angle(choice.chosen, range.middle) <= range.half_width + 0.5 * step) continue;
+      choice.outlier = true;
+      const double before = choice.chosen;
+      for (std::size_t d = 0; d < directions.size(); ++d) {
+        const bool nearer = axis_angle(directions[d], range.middle) < axis_angle(choice.chosen, range.middle) - 1e-9;
+        if (choice.near[d] && nearer) choice.chosen = directions[d];
+      }
+      moved = moved || choice.chosen != before;
+    }
   }
 }
 

@@ -32,7 +32,7 @@ struct PatchCosts {
   int columns = 0, rows = 0, directions = 0;
   // What a rectangle costs in a direction; infinite: not possible. Called once for each.
   std::function<double(const GridRectangle&, int direction)> patch;
-  // From the direction of one patch to that of the next, the same forth and back, 0 from one to itself.
+  // From a patch in one direction to the next in another or the same, the same forth and back.
   std::function<double(int, int)> change;
 };
 

@@ -74,7 +74,6 @@ class Area {
 };
 
 double change_cost(const DirectionTable& table, int from, int to, double turning_cost) {
-  if (from == to) return 0.0;
   const double angle =
       axis_angle(table.directions[static_cast<std::size_t>(from)], table.directions[static_cast<std::size_t>(to)]);
   return 0.5 * turning_cost * (1.0 + angle / kRightAngle);

@@ -15,8 +15,9 @@ enum class PlanObjective { absolute, time };
 
 struct PlanSettings {
   PlanObjective objective = PlanObjective::absolute;
-  // What a change of direction by a right angle costs, as a share of the whole: of the index, or of the time that the
-  // best single direction takes. A smaller angle costs half of it and of the other half in proportion.
+  // What going on to a patch whose direction is turned by a right angle costs, as a share of the whole: of the index,
+  // or of the time that the best single direction takes. A smaller turn, or none, costs half of it and of the other
+  // half in proportion: a patch has its approach and its edges in any case.
   double turning_cost = 0.02;
   double depth_margin = 0.1;  // how far below the limit the planned depth stays, as a share of the limit
 };

@@ -160,8 +160,9 @@ void add_what_is_planned(CLI::App& command, PatternsOptions& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"asi", "time"}));
   command
-      .add_option("--turning-cost", options.turning_percent,
-                  "What a turn of the feed by 90 degrees between two patches costs, per cent of index or time")
+      .add_option(
+          "--turning-cost", options.turning_percent,
+          "What going on to a patch turned by 90 degrees costs, per cent of index or time; to one not turned, half")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0).description(""));
   command.add_option("--margin", options.margin_percent, "How far below the limit the planned depth stays, per cent")

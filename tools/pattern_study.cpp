@@ -156,6 +156,7 @@ PatternStudy study_patterns(const Cell& cell, const PatternQuestion& question,
                             const std::function<void(double)>& progress) {
   PatternStudy study;
   study.question = question;
+  study.region = cell.region;
   const Tool& tool = require(cell, cell.tool, "tool");
   const SpindleLimits& spindle = require(cell, cell.spindle, "spindle");
   study.conditions = {tool.teeth, question.cut.feed_per_tooth, question.cut.radial_depth, question.rapid_rate};

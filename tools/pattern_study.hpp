@@ -13,6 +13,7 @@
 #include "models/direction_field.hpp"
 #include "models/path_plan.hpp"
 #include "models/pattern_rating.hpp"
+#include "models/region.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
@@ -41,6 +42,7 @@ struct RatedPattern {
 
 struct PatternStudy {
   PatternQuestion question;
+  std::optional<Region> region;
   CuttingConditions conditions;
   DirectionTable table;
   DirectionField field;

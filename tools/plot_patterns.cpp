@@ -43,6 +43,25 @@ void add_stroke(plot::Line& line, double x0, double y0, double x1, double y1) {
   line.y.insert(line.y.end(), {y0, y1, kNaN});
 }
 
+// The region's polygon and islands, in grey.
+void add_outline(const PatternStudy& study, plot::Panel& panel, Extent& extent) {
+  if (!study.region) return;
+  std::vector<Contour> contours{study.region->polygon};
+  contours.insert(contours.end(), study.region->islands.begin(), study.region->islands.end());
+  for (const Contour& contour : contours) {
+    plot::Line line;
+    for (std::size_t i = 0; i <= contour.size(); ++i) {
+      const Eigen::Vector2d& point = contour[i % contour.size()];
+      line.x.push_back(1e3 * point.x());
+      line.y.push_back(1e3 * point.y());
+      extent.take(1e3 * point.x(), 1e3 * point.y());
+    }
+    line.color = plot::kGrey;
+    line.width = 1.0;
+    panel.lines.push_back(std::move(line));
+  }
+}
+
 double reach_mm(const PatternStudy& study) {
   std::vector<Eigen::Vector2d> places;
   for (const LocationLimits& location : study.table.locations) places.push_back(location.place);
@@ -118,22 +137,23 @@ plot::Figure field_figure(const PatternStudy& study) {
     best.label = "an outlier's own best";
     panel.lines.push_back(best);
   }
+  add_outline(study, panel, extent);
   plot::Line patches;
   patches.color = plot::kInk;
   patches.width = 0.8;
-  patches.label = study.plan.patches.size() > 1 ? "patches of the plan" : "";
+  patches.label = "patches of the plan";
   for (const PlannedPatch& patch : study.plan.patches) {
+    if (study.plan.patches.size() < 2) break;
     const double left = std::max(1e3 * patch.x_begin, extent.x_low), right = std::min(1e3 * patch.x_end, extent.x_high);
     const double low = std::max(1e3 * patch.y_begin, extent.y_low), high = std::min(1e3 * patch.y_end, extent.y_high);
     add_stroke(patches, left, low, right, low);
     add_stroke(patches, right, low, right, high);
     add_stroke(patches, right, high, left, high);
     add_stroke(patches, left, high, left, low);
-    if (study.plan.patches.size() > 1)
-      panel.notes.push_back({left + 0.02 * (extent.x_high - extent.x_low), high - 0.03 * (extent.y_high - extent.y_low),
-                             number(rad_to_deg(patch.direction), 0) + "°", plot::kInk});
+    panel.notes.push_back({left + 0.02 * (extent.x_high - extent.x_low), high - 0.03 * (extent.y_high - extent.y_low),
+                           number(rad_to_deg(patch.direction), 0) + "°", plot::kInk});
   }
-  panel.lines.push_back(patches);
+  if (!patches.x.empty()) panel.lines.push_back(patches);
   plot::Figure figure = plane_figure(std::move(panel), extent);
   figure.title = "Feed direction to choose at each location";
   figure.subtitle =
@@ -221,6 +241,7 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
     }
   }
   plot::Panel panel;
+  add_outline(study, panel, extent);
   air.color = plot::kGrey;
   air.width = 0.5;
   air.opacity = 0.5;

@@ -31,7 +31,7 @@ struct RandomCosts {
         sum += of[static_cast<std::size_t>((c * rows + row) * directions + direction)];
     return sum;
   }
-  [[nodiscard]] double change(int a, int b) const { return turning * std::abs(a - b); }
+  [[nodiscard]] double change(int a, int b) const { return turning * (0.3 + std::abs(a - b)); }
 
   [[nodiscard]] double of_plan(const std::vector<Patch>& patches) const {
     double sum = 0.0;
