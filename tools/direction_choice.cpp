@@ -11,9 +11,10 @@
 namespace stillcut {
 namespace {
 
-double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+// To a millionth, as users gave it.
+double to_micro(double value) { return std::round(value * 1e6) / 1e6; }
 
-std::string number_text(double value) { return csv_number(rounded(value)); }
+std::string number_text(double value) { return csv_number(to_micro(value)); }
 
 std::string turn_text(double angle) { return number_text(rad_to_deg(angle)) + "°"; }
 
@@ -31,8 +32,8 @@ std::string gain_text(double depth, double from) {
   return text.str();
 }
 
-nlohmann::ordered_json limit_json(double depth) {
-  if (std::isfinite(depth)) return rounded(1e3 * depth);
+nlohmann::ordered_json a_abs_json(double depth) {
+  if (std::isfinite(depth)) return to_micro(1e3 * depth);
   return csv_number(depth);
 }
 
@@ -43,11 +44,11 @@ nlohmann::ordered_json combination_json(const DirectionsResult& result, const Po
     return absolute_limit(curve.limits) == limit(*posture);
   });
   return {{"posture", result.tasks[posture->task]},
-          {"redundancy_deg", rounded(rad_to_deg(posture->variation.redundancy))},
-          {"placement_x_mm", rounded(1e3 * posture->variation.x)},
-          {"placement_y_mm", rounded(1e3 * posture->variation.y)},
-          {"feed_direction_deg", rounded(rad_to_deg(at->direction))},
-          {"a_abs_mm", limit_json(limit(*posture))}};
+          {"redundancy_deg", to_micro(rad_to_deg(posture->variation.redundancy))},
+          {"placement_x_mm", to_micro(1e3 * posture->variation.x)},
+          {"placement_y_mm", to_micro(1e3 * posture->variation.y)},
+          {"feed_direction_deg", to_micro(rad_to_deg(at->direction))},
+          {"a_abs_mm", a_abs_json(limit(*posture))}};
 }
 
 // The combination inside the map with the highest of such limits, of equal ones the first.
@@ -123,9 +124,9 @@ nlohmann::ordered_json choice_json(const DirectionsResult& result) {
       {"best_placement", nullptr}};
   const std::vector<PlacementLimit> placements = placement_limits(result);
   if (const PlacementLimit* best = best_placement(placements); best != nullptr) {
-    json["best_placement"] = {{"placement_x_mm", rounded(1e3 * best->x)},
-                              {"placement_y_mm", rounded(1e3 * best->y)},
-                              {"a_abs_mm", limit_json(best->limit)},
+    json["best_placement"] = {{"placement_x_mm", to_micro(1e3 * best->x)},
+                              {"placement_y_mm", to_micro(1e3 * best->y)},
+                              {"a_abs_mm", a_abs_json(best->limit)},
                               {"weakest_posture", result.tasks[best->weakest]}};
   }
   return json;

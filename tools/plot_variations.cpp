@@ -15,7 +15,7 @@ constexpr std::array<plot::Color, 9> kTaskColors{plot::kBlue,   plot::kVermilion
                                                  plot::kInk,    plot::kGrey,      plot::kYellow};
 constexpr int kCellPixels = 16;  // of a grid cell, so that it is seen as one
 
-std::string mm_text(double length) { return csv_number(std::round(length * 1e6) / 1e3); }
+std::string shift_text(double length) { return csv_number(std::round(length * 1e6) / 1e3); }
 
 struct Sweep {  // one of a variation's numbers on the x axis, the others held
   std::string label, elsewhere;
@@ -34,7 +34,7 @@ std::optional<Sweep> sweep_of(const DirectionsResult& result) {
     const PlacementLimit* best = best_placement(placements);
     held.x = best == nullptr ? placements.front().x : best->x;
     held.y = best == nullptr ? placements.front().y : best->y;
-    const std::string moved = "; part moved by " + mm_text(held.x) + ", " + mm_text(held.y) + " mm";
+    const std::string moved = "; part moved by " + shift_text(held.x) + ", " + shift_text(held.y) + " mm";
     return Sweep{"redundancy angle, °", asked.xs ? moved : "", &Variation::redundancy,
                  rad_to_deg(1.0),       *asked.redundancies,   held};
   }

@@ -19,7 +19,7 @@ constexpr double kSameTool = 1e-3;  // m: what maps are rounded to, and more
 constexpr int kMostValues = 10'000;
 
 template <class Number>
-Number number_of(const std::string& text) {
+Number parsed_number(const std::string& text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) throw std::invalid_argument("no number");
@@ -48,9 +48,9 @@ std::vector<double> equally_spaced_values(const std::string& text) {
   int count = 0;
   try {
     if (parts.size() != 3) throw std::invalid_argument("not three");
-    low = number_of<double>(parts[0]);
-    high = number_of<double>(parts[1]);
-    count = number_of<int>(parts[2]);
+    low = parsed_number<double>(parts[0]);
+    high = parsed_number<double>(parts[1]);
+    count = parsed_number<int>(parts[2]);
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument("'" + text + "' is not MIN:MAX:COUNT, such as -30:30:13");
   }
