@@ -40,10 +40,11 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-4 * b[i]) << i;
 }
 
-// Fails where the posture goes through inverse kinematics although nothing is to change.
+// Also with the wrist stretched, where the arm is singular: fails where a posture goes through inverse kinematics
+// although nothing is to change.
 TEST(Variations, NothingTurnedOrMovedIsThePlainAnswer) {
   const RobotCell cell;
-  const std::vector<std::string> base{"--step", "45", "--posture", "home", "--posture", "5,2,12,0,70,3", "--csv", "-"};
+  const std::vector<std::string> base{"--step", "45", "--posture", "home", "--posture", "5,2,12,0,0,3", "--csv", "-"};
   const auto plain = rows_of(cell.varied(base));
   ASSERT_EQ(plain.size(), 16U);
   for (const std::vector<std::string>& asked :
