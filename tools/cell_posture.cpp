@@ -10,6 +10,17 @@
 #include "models/modal_refit.hpp"
 
 namespace stillcut {
+namespace {
+
+PredictedPosture predicted_at(const Cell& cell, const CellDynamics& dynamics, const Posture& posture) {
+  try {
+    return predict_posture(dynamics.map, posture, dynamics.interpolation);
+  } catch (const std::invalid_argument& error) {  // the posture was found: what cannot be is in the map or its settings
+    throw InputError(require(cell, cell.dynamics, "dynamics").map.string(), 0, error.what());
+  }
+}
+
+}  // namespace
 
 CellDynamics read_cell_dynamics(const Cell& cell) {
   const DynamicsSettings& dynamics = require(cell, cell.dynamics, "dynamics");
@@ -33,16 +44,15 @@ Posture posture_of(const Cell& cell, const DynamicsMap& map, const std::string& 
 }
 
 PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked) {
-  const Posture posture = posture_of(cell, dynamics.map, asked);
-  try {
-    return predict_posture(dynamics.map, posture, dynamics.interpolation);
-  } catch (const std::invalid_argument& error) {  // the posture was found: what cannot be is in the map or its settings
-    throw InputError(require(cell, cell.dynamics, "dynamics").map.string(), 0, error.what());
-  }
+  return predicted_at(cell, dynamics, posture_of(cell, dynamics.map, asked));
 }
 
 PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked) {
-  return with_few_modes(predicted_posture(cell, dynamics, asked), kMostFloquetModes);
+  return stability_posture(cell, dynamics, posture_of(cell, dynamics.map, asked));
+}
+
+PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const Posture& posture) {
+  return with_few_modes(predicted_at(cell, dynamics, posture), kMostFloquetModes);
 }
 
 std::vector<std::string> stability_warnings(const Tool& tool, const Cut& cut, const PredictedPosture& predicted) {

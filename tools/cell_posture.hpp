@@ -30,6 +30,9 @@ PredictedPosture predicted_posture(const Cell& cell, const CellDynamics& dynamic
 // The same with fitted modes where "frf" superposes more than the Floquet solution takes. Throws InputError.
 PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const std::string& asked = {});
 
+// The same at a posture that no user named: one moved from the map's. Throws InputError.
+PredictedPosture stability_posture(const Cell& cell, const CellDynamics& dynamics, const Posture& posture);
+
 // What a reader of lobes at this posture has to know, one line each: parts of the cell that they leave out, a posture
 // outside the map, modes that were fitted. `tool` and `cut` are the cell's.
 std::vector<std::string> stability_warnings(const Tool& tool, const Cut& cut, const PredictedPosture& predicted);

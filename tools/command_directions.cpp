@@ -8,6 +8,7 @@
 
 #include "drivers/files/cell.hpp"
 #include "models/lobes.hpp"
+#include "tools/direction_choice.hpp"
 #include "tools/direction_study.hpp"
 #include "tools/output_file.hpp"
 #include "tools/output_options.hpp"
@@ -17,6 +18,7 @@ namespace stillcut {
 namespace {
 
 constexpr int kSpeeds = 201;
+constexpr double kMostVariations = 1e5;
 
 struct DirectionsOptions : OutputOptions {
   std::string cell;
@@ -25,6 +27,7 @@ struct DirectionsOptions : OutputOptions {
   std::string method = "sdm";
   std::string milling;  // empty: the cell's
   std::optional<double> radial_depth_mm;
+  std::string redundancy, placement, robot;
   int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 };
 
@@ -39,8 +42,45 @@ Cut cut_of(const Cell& cell, const DirectionsOptions& options) {
   return cut;
 }
 
+// SI units of what an option lists.
+std::vector<double> values_of(const char* option, const std::string& text, double (*to_si)(double)) {
+  try {
+    std::vector<double> values = equally_spaced_values(text);
+    for (double& value : values) value = to_si(value);
+    return values;
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(option, error.what());
+  }
+}
+
+VariationsAsked variations_of(const DirectionsOptions& options) {
+  VariationsAsked asked{{}, {}, {}, options.robot};
+  if (!options.redundancy.empty()) {
+    asked.redundancies = values_of("--redundancy", options.redundancy, deg_to_rad);
+    if (asked.redundancies->back() - asked.redundancies->front() > kTwoPi)
+      throw CLI::ValidationError("--redundancy", "is more than a whole turn");
+  }
+  if (!options.placement.empty()) {
+    const auto comma = options.placement.find(',');
+    if (comma == std::string::npos)
+      throw CLI::ValidationError("--placement", "'" + options.placement +
+                                                    "' is not X_MIN:X_MAX:COUNT,Y_MIN:Y_MAX:COUNT, such as "
+                                                    "-100:100:5,0:0:1");
+    const auto metres = [](double mm) { return 1e-3 * mm; };
+    asked.xs = values_of("--placement", options.placement.substr(0, comma), metres);
+    asked.ys = values_of("--placement", options.placement.substr(comma + 1), metres);
+  }
+  const auto count = [](const auto& values) { return values ? static_cast<double>(values->size()) : 1.0; };
+  if (count(asked.redundancies) * count(asked.xs) * count(asked.ys) > kMostVariations)
+    throw CLI::ValidationError("--redundancy and --placement", "are more than 100000 combinations");
+  if (!options.robot.empty() && !asked.any())
+    throw CLI::ValidationError("--robot", "tells how to turn and move; add --redundancy or --placement");
+  return asked;
+}
+
 void run(const DirectionsOptions& options) {
   check_output_options(options);
+  const VariationsAsked asked = variations_of(options);
   const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   const SpindleLimits& spindle = require(cell, cell.spindle, "spindle");
   DirectionStudy study;
@@ -52,7 +92,8 @@ void run(const DirectionsOptions& options) {
   study.sense = options.milling == "alternating" ? CutSense::alternating : CutSense::as_set;
   study.max_depth = options.max_depth_mm * 1e-3;
   Progress progress("directions");
-  const DirectionsResult result = study_directions(cell, cut_of(cell, options), options.postures, study, options.jobs,
+  const Cut cut = cut_of(cell, options);
+  const DirectionsResult result = study_directions(cell, cut, options.postures, asked, study, options.jobs,
                                                    [&](double share) { progress.update(share); });
   progress.finish();
   for (const std::string& line : result.warnings) std::cerr << "stillcut: " << options.cell << ": " << line << '\n';
@@ -62,11 +103,16 @@ void run(const DirectionsOptions& options) {
     write_directions_csv(result, file.stream());
     file.finish();
   }
-  if (!options.plot.empty()) plot::write_figure(directions_figure(result), options.plot);
+  if (!options.plot.empty()) {
+    plot::write_figure(asked.any() ? variations_figure(result, cut.feed_direction) : directions_figure(result),
+                       options.plot);
+  }
   if (options.json) {
-    std::cout << directions_json(result).dump() << '\n';
+    nlohmann::ordered_json json = directions_json(result);
+    if (asked.any()) json.update(choice_json(result));
+    std::cout << json.dump() << '\n';
   } else if (options.csv != "-") {
-    print_directions_summary(result, std::cout);
+    asked.any() ? print_choice(result, std::cout) : print_directions_summary(result, std::cout);
   }
 }
 
@@ -98,13 +144,22 @@ void add_directions_command(CLI::App& app) {
   command->add_option("--max-depth", options->max_depth_mm, "Largest depth to look at, mm")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 1e4).description(""));
+  command->add_option("--redundancy", options->redundancy,
+                      "MIN:MAX:COUNT in degrees: the robot turned about the tool's axis so much from each posture");
+  command->add_option("--placement", options->placement,
+                      "X_MIN:X_MAX:COUNT,Y_MIN:Y_MAX:COUNT in mm: the part moved so much before the robot");
+  command->add_option("--robot", options->robot,
+                      "URDF file (docs/robot.md) of the robot that turns and moves, where the map has joints");
   command->add_option("--jobs", options->jobs, "Threads (default: one a processor)")->check(CLI::Range(1, 256));
   add_output_options(*command, *options, "Write posture,feed_direction_deg,a_abs_mm,a_pocket_mm,pocket_rpm",
-                     "Draw the limits as a polar diagram");
+                     "Draw the limits as a polar diagram, or over redundancy angle and placement");
   command->footer(
       "a_abs: the depth that is stable at every speed of [spindle]; a_pocket: the deepest at any one of them.\n"
       "Example:\n"
-      "  stillcut directions examples/robot-cell/cell.toml --step 15 --csv directions.csv --plot directions.svg");
+      "  stillcut directions examples/robot-cell/cell.toml --step 15 --csv directions.csv --plot directions.svg\n"
+      "Example: which turn of the robot about the tool's axis allows the deepest cut:\n"
+      "  stillcut directions examples/demo-robot/turned.toml --robot examples/demo-robot/robot.urdf\n"
+      "      --redundancy -40:40:9 --method zoa");
   command->callback([options] { run(*options); });
 }
 

@@ -128,7 +128,8 @@ void add_map_command(CLI::App& app) {
   CLI::Option* out = command->add_option("--out", options->out, "Folder for that map");
   command
       ->add_option("--postures", options->postures,
-                   "Where: posture,j1_deg,... or posture,x_mm,y_mm,z_mm; default: the robot's home")
+                   "Where: posture,j1_deg,... or posture,x_mm,y_mm,z_mm and perhaps redundancy_deg; default: the "
+                   "robot's home")
       ->needs(robot);
   robot->needs(out);
   for (const char* other : {"--posture", "--interpolation", "--csv", "--plot"})

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <set>
 #include <stdexcept>
@@ -36,38 +37,109 @@ std::string depth_text(double depth, double max_depth) {
 
 std::string degrees_text(double direction) { return csv_number(as_given(rad_to_deg(direction))) + "°"; }
 
+// A posture with a variation, or why the robot cannot stand so.
+struct Attempt {
+  std::optional<PostureDirections> found;
+  std::string refusal;
+};
+
+std::string variation_text(const Variation& variation) {
+  return "redundancy " + degrees_text(variation.redundancy) + ", part moved by " +
+         csv_number(as_given(1e3 * variation.x)) + ", " + csv_number(as_given(1e3 * variation.y)) + " mm";
+}
+
+// What the reader has to know of all of them. Variations by the hundred: the worst fit and the first outside speak for
+// them all.
+std::vector<std::string> warnings_of(const Tool& tool, const Cut& cut, const std::vector<PostureDirections>& postures,
+                                     bool varied) {
+  std::vector<std::string> lines;
+  std::set<std::string> told;
+  const auto tell = [&](const PredictedPosture& predicted) {
+    for (const std::string& line : stability_warnings(tool, cut, predicted))
+      if (told.insert(line).second) lines.push_back(line);
+  };
+  if (!varied) {
+    for (const PostureDirections& posture : postures) tell(posture.predicted);
+    return lines;
+  }
+  PredictedPosture worst = std::max_element(postures.begin(), postures.end(), [](const auto& a, const auto& b) {
+                             return a.predicted.fit_error < b.predicted.fit_error;
+                           })->predicted;
+  worst.outside = false;
+  tell(worst);
+  const auto outside = [](const PostureDirections& posture) { return posture.predicted.outside; };
+  const auto first = std::find_if(postures.begin(), postures.end(), outside);
+  if (first == postures.end()) return lines;
+  lines.push_back(std::to_string(std::count_if(first, postures.end(), outside)) + " of " +
+                  std::to_string(postures.size()) +
+                  " combinations lie outside the map and are not chosen; the first, " +
+                  variation_text(first->variation) + ": " + outside_map_text(first->predicted));
+  return lines;
+}
+
 }  // namespace
 
 DirectionsResult study_directions(const Cell& cell, const Cut& cut, const std::vector<std::string>& postures,
-                                  const DirectionStudy& study, int threads,
+                                  const VariationsAsked& asked, const DirectionStudy& study, int threads,
                                   const std::function<void(double)>& progress) {
   const CellDynamics dynamics = read_cell_dynamics(cell);
-  DirectionsResult result{study, {}, {}};
-  if (postures.empty()) {
-    for (const Posture& posture : dynamics.map.postures)
-      result.postures.push_back({stability_posture(cell, dynamics, posture.id), {}});
-  }
-  for (const std::string& asked : postures) result.postures.push_back({stability_posture(cell, dynamics, asked), {}});
-  std::set<std::string> told;
-  for (const PostureDirections& posture : result.postures) {
-    for (const std::string& line : stability_warnings(require(cell, cell.tool, "tool"), cut, posture.predicted))
-      if (told.insert(line).second) result.warnings.push_back(line);
-  }
-
+  const PostureMover mover(cell, dynamics.map, asked);
   const Tool& tool = require(cell, cell.tool, "tool");
   const Material& material = require(cell, cell.material, "material");
+  std::vector<Posture> tasks;
+  if (postures.empty()) tasks = dynamics.map.postures;
+  for (const std::string& named : postures) tasks.push_back(posture_of(cell, dynamics.map, named));
+  const std::vector<Variation> variations = all_variations(asked);
+
+  std::vector<Attempt> attempts(tasks.size() * variations.size());
   std::atomic<std::size_t> done{0};
   const auto solve = [&](std::size_t i) {
-    PostureDirections& posture = result.postures[i];
-    posture.curves = limits_over_direction(tool, material, cut, posture.predicted.posture.modes, study);
+    const std::size_t task = i / variations.size();
+    const Variation& variation = variations[i % variations.size()];
+    Posture posture;
+    try {
+      posture = mover.moved(tasks[task], variation);
+    } catch (const std::invalid_argument& error) {
+      attempts[i].refusal = tasks[task].id + ", " + variation_text(variation) + ": " + error.what();
+    }
+    if (attempts[i].refusal.empty()) {
+      PostureDirections found{stability_posture(cell, dynamics, posture), {}, task, variation};
+      const std::vector<Mode>& modes = found.predicted.posture.modes;
+      found.curves = limits_over_direction(tool, material, cut, modes, study);
+      if (asked.any()) {
+        DirectionStudy own = study;
+        own.directions = {cut.feed_direction};
+        found.own_limit = absolute_limit(limits_over_direction(tool, material, cut, modes, own).front().limits);
+      }
+      attempts[i].found = std::move(found);
+    }
     ++done;
   };
   try {
-    run_tasks(result.postures.size(), threads, solve,
-              [&] { progress(static_cast<double>(done) / static_cast<double>(result.postures.size())); });
+    run_tasks(attempts.size(), threads, solve,
+              [&] { progress(static_cast<double>(done) / static_cast<double>(attempts.size())); });
   } catch (const std::invalid_argument& error) {
     throw InputError(cell.file.string(), 0, error.what());
   }
+
+  DirectionsResult result{study, {}, {}, asked};
+  for (const Posture& task : tasks) result.tasks.push_back(task.id);
+  std::size_t left_out = 0;
+  std::string reason;
+  for (Attempt& attempt : attempts) {
+    if (attempt.found) {
+      result.postures.push_back(std::move(*attempt.found));
+    } else if (left_out++ == 0) {
+      reason = attempt.refusal;
+    }
+  }
+  if (result.postures.empty()) throw InputError(asked.robot, 0, "the robot can stand in none of them; " + reason);
+  result.warnings = warnings_of(tool, cut, result.postures, asked.any());
+  if (left_out > 0) {
+    result.warnings.push_back(std::to_string(left_out) + " of " + std::to_string(attempts.size()) +
+                              " combinations are left out; the first: " + reason);
+  }
+  if (const std::string line = mover.disagreement(dynamics.map); !line.empty()) result.warnings.push_back(line);
   return result;
 }
 
@@ -80,14 +152,22 @@ std::size_t best_direction(const PostureDirections& posture) {
 }
 
 void write_directions_csv(const DirectionsResult& result, std::ostream& out) {
-  out << "posture,feed_direction_deg,a_abs_mm,a_pocket_mm,pocket_rpm\n";
+  const bool varied = result.asked.any();
+  out << "posture,feed_direction_deg,a_abs_mm,a_pocket_mm,pocket_rpm"
+      << (varied ? ",redundancy_deg,placement_x_mm,placement_y_mm,outside_map\n" : "\n");
   for (const PostureDirections& posture : result.postures) {
     for (const DirectionCurve& curve : posture.curves) {
       const Pocket pocket = deepest_pocket(curve.limits, result.study.speeds);
-      const std::vector<std::string> fields{
-          csv_text(posture.predicted.posture.id), csv_number(as_given(rad_to_deg(curve.direction))),
-          csv_number(absolute_limit(curve.limits) * 1e3), csv_number(pocket.depth * 1e3),
-          csv_number(as_given(rad_s_to_rpm(pocket.speed)))};
+      std::vector<std::string> fields{csv_text(posture.predicted.posture.id),
+                                      csv_number(as_given(rad_to_deg(curve.direction))),
+                                      csv_number(absolute_limit(curve.limits) * 1e3), csv_number(pocket.depth * 1e3),
+                                      csv_number(as_given(rad_s_to_rpm(pocket.speed)))};
+      if (varied) {
+        fields.push_back(csv_number(as_given(rad_to_deg(posture.variation.redundancy))));
+        fields.push_back(csv_number(as_given(1e3 * posture.variation.x)));
+        fields.push_back(csv_number(as_given(1e3 * posture.variation.y)));
+        fields.emplace_back(posture.predicted.outside ? "1" : "0");
+      }
       write_csv_row(out, fields);
     }
   }
@@ -104,11 +184,16 @@ nlohmann::ordered_json directions_json(const DirectionsResult& result) {
                             {"a_pocket_mm", depth_json(pocket.depth)},
                             {"pocket_rpm", as_given(rad_s_to_rpm(pocket.speed))}});
     }
-    const DirectionCurve& best = posture.curves[best_direction(posture)];
-    postures.push_back({{"posture", posture.predicted.posture.id},
-                        {"outside_map", posture.predicted.outside},
-                        {"best_direction_deg", as_given(rad_to_deg(best.direction))},
-                        {"directions", directions}});
+    nlohmann::ordered_json entry{{"posture", posture.predicted.posture.id}};
+    if (result.asked.any()) {
+      entry["redundancy_deg"] = as_given(rad_to_deg(posture.variation.redundancy));
+      entry["placement_x_mm"] = as_given(1e3 * posture.variation.x);
+      entry["placement_y_mm"] = as_given(1e3 * posture.variation.y);
+    }
+    entry["outside_map"] = posture.predicted.outside;
+    entry["best_direction_deg"] = as_given(rad_to_deg(posture.curves[best_direction(posture)].direction));
+    entry["directions"] = std::move(directions);
+    postures.push_back(std::move(entry));
   }
   constexpr const char* kMethods[] = {"sdm", "zoa", "paper"};
   return {{"method", kMethods[static_cast<int>(result.study.method)]},

@@ -1,5 +1,6 @@
 #include "tools/robot_map.hpp"
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -48,8 +49,14 @@ JointVector row_angles(const Arm& arm, const CsvTable& table, const CsvRow& row,
   }
   const auto mm = [&](const char* name) { return 1e-3 * table.number(row, table.require_column(name)); };
   const Eigen::Vector3d place{mm("x_mm"), mm("y_mm"), mm("z_mm")};
+  ToolPose pose{place, tool_pose(arm, home_angles(arm)).turned};
+  if (const auto turn = table.find_column("redundancy_deg")) {
+    if (arm.size() < kMapJoints) table.fail(row, *turn, "to turn about the tool's axis takes six joints; leave it out");
+    const double angle = deg_to_rad(table.number(row, *turn));
+    pose.turned = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * pose.turned;
+  }
   try {
-    return reach(arm, place);
+    return reach(arm, pose, home_angles(arm));
   } catch (const std::invalid_argument& error) {
     table.fail(row, first_column, error.what());
   }
@@ -73,11 +80,13 @@ DynamicsMap robot_postures(const Arm& arm, const std::string& robot_file, const 
     return map;
   }
   const CsvTable table = read_csv(postures_file);
-  std::vector<std::string> known{"posture", "x_mm", "y_mm", "z_mm"};
+  std::vector<std::string> known{"posture", "x_mm", "y_mm", "z_mm", "redundancy_deg"};
   known.insert(known.end(), kAngleColumns.begin(), kAngleColumns.begin() + arm.size());
   check_column_names(table, known);
   const std::size_t id_column = table.require_column("posture");
   const bool joints = table.find_column("j1_deg").has_value();
+  if (const auto turn = table.find_column("redundancy_deg"); joints && turn)
+    throw InputError(postures_file, 1, "redundancy_deg goes with x_mm,y_mm,z_mm; joint angles tell it already");
   for (const CsvRow& row : table.rows()) {
     const std::string id = table.text(row, id_column);
     if (id.empty()) table.fail(row, id_column, "is empty; give the posture an id");

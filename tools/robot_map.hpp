@@ -14,7 +14,8 @@
 namespace stillcut {
 
 // Where the map is wanted: a file with the columns posture,j1_deg,...,jn_deg or posture,x_mm,y_mm,z_mm (solved by
-// inverse kinematics, models/arm_reach); an empty name: the home posture. Modes are not filled in. Throws InputError:
+// inverse kinematics, models/arm_reach, the tool turned as at home or, with a column redundancy_deg, by so much from it
+// about the workpiece's Z); an empty name: the home posture. Modes are not filled in. Throws InputError:
 // a posture twice, beyond the joints' limits, out of reach or singular, an arm of more than six joints.
 DynamicsMap robot_postures(const Arm& arm, const std::string& robot_file, const std::string& postures_file);
 

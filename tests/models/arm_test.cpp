@@ -146,6 +146,56 @@ TEST(ArmReach, FindsPlacesWithTheToolTurnedAsAtHome) {
   }
 }
 
+// Fails with a step that aims at the place alone, with the turn about the wrong axes, or one turned back the wrong way.
+TEST(ArmReach, FindsPosesFromANearbyPosture) {
+  const Arm arm = test::machining_arm();
+  std::mt19937 random(20240611);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  int reached = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    JointVector there(arm.size()), start(arm.size());
+    for (int i = 0; i < arm.size(); ++i) {
+      there[i] = home_angles(arm)[i] + 0.5 * share(random);
+      start[i] = there[i] + 0.3 * share(random);
+    }
+    const ToolPose asked = tool_pose(arm, there);
+    JointVector found;
+    try {
+      found = reach(arm, asked, start);
+    } catch (const std::invalid_argument&) {  // on the way to a singular posture
+      continue;
+    }
+    ++reached;
+    const ToolPose pose = tool_pose(arm, found);
+    EXPECT_LT((pose.place - asked.place).norm(), 1e-9) << trial;
+    EXPECT_LT((pose.turned - asked.turned).norm(), 2e-9) << trial;
+    EXPECT_EQ(beyond_limits(arm, found), "") << trial;
+  }
+  EXPECT_GE(reached, 495);
+}
+
+TEST(ArmReach, TurnsAJointBackWhereItsLimitsAsk) {
+  Arm arm = test::machining_arm();
+  const JointVector home = home_angles(arm);
+  JointVector round = home;
+  round[5] += 2.0 * std::numbers::pi;
+  arm.joints[5].upper = 7.0;
+  EXPECT_LT((reach(arm, tool_pose(arm, home), round) - round).norm(), 1e-9);
+  arm.joints[5].upper = 3.1;
+  EXPECT_LT((reach(arm, tool_pose(arm, home), round) - home).norm(), 1e-9);
+}
+
+TEST(ArmReach, RefusesATurnThatTheArmCannotMake) {
+  Arm arm = test::machining_arm();
+  const JointVector home = home_angles(arm);
+  ToolPose asked = tool_pose(arm, home);
+  asked.turned = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) * asked.turned;
+  EXPECT_NO_THROW(reach(arm, asked, home));
+  arm.joints[5].lower = -0.1;
+  arm.joints[5].upper = 0.1;
+  EXPECT_NE(refusal_of([&] { reach(arm, asked, home); }).find("joint_6 at"), std::string::npos);
+}
+
 TEST(ArmReach, RefusesPlacesWithTheReason) {
   Arm arm = test::machining_arm();
   const auto refusal = [&](const Eigen::Vector3d& place) { return refusal_of([&] { reach(arm, place); }); };
