@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kClearance = 5e-3;  // m
 
-std::string number(double value, double step) { return csv_number(std::round(value / step) * step); }
+std::string rounded_to(double value, double step) { return csv_number(std::round(value / step) * step); }
 
 // A comment wherever the spindle speed changes.
 std::vector<std::pair<std::size_t, std::string>> speed_sections(const ToolPath& path) {
@@ -23,8 +23,8 @@ std::vector<std::pair<std::size_t, std::string>> speed_sections(const ToolPath& 
     if (!move.cutting || move.spindle_speed == speed) continue;
     speed = move.spindle_speed;
     const Eigen::Vector2d way = (move.to - move.from).head<2>();
-    sections.emplace_back(i, "feed along " + number(rad_to_deg(std::atan2(way.y(), way.x())), 0.1) + " deg at " +
-                                 number(rad_s_to_rpm(speed), 1.0) + " rpm");
+    sections.emplace_back(i, "feed along " + rounded_to(rad_to_deg(std::atan2(way.y(), way.x())), 0.1) + " deg at " +
+                                 rounded_to(rad_s_to_rpm(speed), 1.0) + " rpm");
   }
   return sections;
 }
@@ -51,7 +51,7 @@ void write_pattern_gcode(const Cell& cell, const PatternStudy& study, const Rate
     const ToolPath path = in_layers(once, depth.value_or(layer), layer, kClearance);
     GcodeHeader header;
     header.name = pattern.name + " for " + cell.file.filename().string();
-    header.remarks = {"limits predicted by stillcut, layers of at most " + number(layer * 1e3, 1e-4) + " mm",
+    header.remarks = {"limits predicted by stillcut, layers of at most " + rounded_to(layer * 1e3, 1e-4) + " mm",
                       "Z 0 is the top of the part"};
     header.sections = speed_sections(path);
     write_gcode(path, out, header);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<plot::Color, 6> kGroupColors{plot::kBlue,   plot::kVermilion, plot::kGreen,
                                                   plot::kPurple, plot::kOrange,    plot::kSkyBlue};
 
-std::string number(double value, int decimals) {
+std::string plot_number(double value, int decimals) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
   return text.data();
@@ -62,6 +62,8 @@ void add_outline(const PatternStudy& study, plot::Panel& panel, Extent& extent) 
   }
 }
 
+bool is_line(const RatedPattern& pattern) { return pattern.name.rfind("zig", 0) == 0; }
+
 double reach_mm(const PatternStudy& study) {
   std::vector<Eigen::Vector2d> places;
   for (const LocationLimits& location : study.table.locations) places.push_back(location.place);
@@ -75,12 +77,13 @@ plot::Figure ranking_figure(const PatternStudy& study) {
   constexpr std::size_t kLinesShown = 6;  // beside the landmarks and the other patterns: names need their room
   std::vector<const RatedPattern*> shown;
   for (const RatedPattern& pattern : study.patterns) {
-    const bool line = pattern.name.rfind("zig", 0) == 0;
-    const auto lines = static_cast<std::size_t>(std::count_if(
-        shown.begin(), shown.end(), [](const RatedPattern* other) { return other->name.rfind("zig", 0) == 0; }));
+    const bool line = is_line(pattern);
+    const auto lines = static_cast<std::size_t>(
+        std::count_if(shown.begin(), shown.end(), [](const RatedPattern* other) { return is_line(*other); }));
     const bool landmark = pattern.name == "zig 0" || pattern.name == "zig 90";
     if (!line || landmark || lines < kLinesShown) shown.push_back(&pattern);
   }
+  if (!study.optimized.path.moves.empty()) shown.insert(shown.begin(), &study.optimized);
   plot::Panel panel;
   plot::Axis names{"", 0.4, static_cast<double>(shown.size()) + 0.6};
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -91,9 +94,9 @@ plot::Figure ranking_figure(const PatternStudy& study) {
     bar.low = {0.0, 0.0};
     bar.high = {value, value};
     bar.opacity = 0.85;
-    bar.color = shown[i]->name.rfind("zig", 0) == 0 ? plot::kBlue : plot::kOrange;
+    bar.color = is_line(*shown[i]) ? plot::kBlue : shown[i] == &study.optimized ? plot::kGreen : plot::kOrange;
     panel.areas.push_back(bar);
-    panel.notes.push_back({middle - 0.3, value + 1.5, number(value, 1), plot::kInk});
+    panel.notes.push_back({middle - 0.3, value + 1.5, plot_number(value, 1), plot::kInk});
   }
   panel.y = {"absolute stability index, %", 0.0, 112.0};
   plot::Figure figure;
@@ -130,7 +133,7 @@ plot::Figure field_figure(const PatternStudy& study) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     groups[g].color = kGroupColors[g];
     groups[g].width = 3.0;
-    groups[g].label = "group of " + number(rad_to_deg(study.field.groups[g].direction), 0) + "°";
+    groups[g].label = "group of " + plot_number(rad_to_deg(study.field.groups[g].direction), 0) + "°";
     panel.lines.push_back(groups[g]);
   }
   if (!best.x.empty()) {
@@ -151,7 +154,7 @@ plot::Figure field_figure(const PatternStudy& study) {
     add_stroke(patches, right, high, left, high);
     add_stroke(patches, left, high, left, low);
     panel.notes.push_back({left + 0.02 * (extent.x_high - extent.x_low), high - 0.03 * (extent.y_high - extent.y_low),
-                           number(rad_to_deg(patch.direction), 0) + "°", plot::kInk});
+                           plot_number(rad_to_deg(patch.direction), 0) + "°", plot::kInk});
   }
   if (!patches.x.empty()) panel.lines.push_back(patches);
   plot::Figure figure = plane_figure(std::move(panel), extent);
@@ -195,8 +198,8 @@ plot::Figure common_lobes_figure(const PatternStudy& study, const RatedPattern& 
   panel.y = {"axial depth, mm", 0.0, std::min(1.05 * highest, 6e3 * pocket.depth + 1e-3)};
   plot::Figure figure;
   figure.title = pattern.name + ": lobes of all locations along the path";
-  figure.subtitle =
-      "common pocket " + number(1e3 * pocket.depth, 3) + " mm at " + number(rad_s_to_rpm(pocket.speed), 0) + " rpm";
+  figure.subtitle = "common pocket " + plot_number(1e3 * pocket.depth, 3) + " mm at " +
+                    plot_number(rad_s_to_rpm(pocket.speed), 0) + " rpm";
   figure.x = {"spindle speed, rpm"};
   figure.panels = {std::move(panel)};
   figure.height = 620;
@@ -255,7 +258,7 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
   }
   plot::Figure figure = plane_figure(std::move(panel), extent);
   figure.title = pattern.name + ", coloured by its margin against chatter";
-  figure.subtitle = "a_lim / a − 1 at " + number(1e3 * axial_depth, 3) + " mm of depth";
+  figure.subtitle = "a_lim / a − 1 at " + plot_number(1e3 * axial_depth, 3) + " mm of depth";
   return figure;
 }
 
