@@ -13,7 +13,7 @@ namespace {
 using Neighbours = std::vector<std::vector<std::size_t>>;
 
 Neighbours neighbours_of(const DirectionTable& table) {
-  constexpr double kOfReach = 1.75;  // diagonals of grids up to 1.4 times as long as wide are within it
+  constexpr double kOfReach = 1.5;  // a square grid's diagonals are 1.41 spacings long
   std::vector<Eigen::Vector2d> places;
   for (const LocationLimits& location : table.locations) places.push_back(location.place);
   const double reach = kOfReach * reach_of(places);

@@ -68,16 +68,23 @@ void add_cuts(std::vector<Stretch> stretches, std::size_t location, double same_
 }  // namespace
 
 double reach_of(std::span<const Eigen::Vector2d> places) {
-  double reach = 0.0;
-  for (const Eigen::Vector2d& place : places) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector2d& other : places) {
-      const double distance = (other - place).norm();
-      if (distance > 0.0) nearest = std::min(nearest, distance);
+  if (places.size() < 2) return std::numeric_limits<double>::infinity();
+  // Prim's algorithm: from one place on, always the nearest one that is not joined yet.
+  std::vector<double> distance(places.size(), std::numeric_limits<double>::infinity());
+  std::vector<bool> joined(places.size(), false);
+  double longest = 0.0;
+  for (std::size_t joined_last = 0, count = 1; count < places.size(); ++count) {
+    joined[joined_last] = true;
+    std::size_t nearest = places.size();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (joined[i]) continue;
+      distance[i] = std::min(distance[i], (places[i] - places[joined_last]).norm());
+      if (nearest == places.size() || distance[i] < distance[nearest]) nearest = i;
     }
-    reach = std::max(reach, nearest);
+    longest = std::max(longest, distance[nearest]);
+    joined_last = nearest;
   }
-  return reach;
+  return longest;
 }
 
 std::size_t nearest_location(const Eigen::Vector2d& place, std::span<const Eigen::Vector2d> places) {

@@ -24,8 +24,8 @@ struct PathOnLocations {
   Eigen::Vector2d farthest_place{0.0, 0.0};       // m
 };
 
-// How far a location speaks for its surroundings, m: the longest way from one to its nearest neighbour; infinite for a
-// single one, which speaks for everything.
+// How far a location speaks for its surroundings, m: the longest edge of the shortest tree that joins them all, which on
+// a grid is the spacing of its columns or rows, the wider one. Infinite for a single one, which speaks for everything.
 double reach_of(std::span<const Eigen::Vector2d> places);
 
 // Directions within `same_direction` (rad) of one in which much is cut are taken as that one, as with the chords of an

@@ -10,6 +10,7 @@
 #include "models/lobes.hpp"
 #include "tools/direction_choice.hpp"
 #include "tools/direction_study.hpp"
+#include "tools/location_study.hpp"
 #include "tools/output_file.hpp"
 #include "tools/output_options.hpp"
 #include "tools/progress.hpp"
@@ -26,7 +27,7 @@ struct DirectionsOptions : OutputOptions {
   double step_deg = 10.0, max_depth_mm = 20.0;
   std::string method = "sdm";
   std::string milling;  // empty: the cell's
-  std::optional<double> radial_depth_mm;
+  std::optional<double> radial_depth_mm, grid_mm;
   std::string redundancy, placement, robot;
   int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 };
@@ -78,6 +79,15 @@ VariationsAsked variations_of(const DirectionsOptions& options) {
   return asked;
 }
 
+// What --grid or --posture names; none: all of the map.
+std::vector<std::string> postures_of(const Cell& cell, const DirectionsOptions& options) {
+  if (!options.grid_mm) return options.postures;
+  std::vector<std::string> places;
+  for (const PredictedPosture& place : study_locations(cell, read_cell_dynamics(cell), *options.grid_mm * 1e-3))
+    places.push_back(place.posture.id);  // as --posture takes places
+  return places;
+}
+
 void run(const DirectionsOptions& options) {
   check_output_options(options);
   const VariationsAsked asked = variations_of(options);
@@ -93,7 +103,7 @@ void run(const DirectionsOptions& options) {
   study.max_depth = options.max_depth_mm * 1e-3;
   Progress progress("directions");
   const Cut cut = cut_of(cell, options);
-  const DirectionsResult result = study_directions(cell, cut, options.postures, asked, study, options.jobs,
+  const DirectionsResult result = study_directions(cell, cut, postures_of(cell, options), asked, study, options.jobs,
                                                    [&](double share) { progress.update(share); });
   progress.finish();
   for (const std::string& line : result.warnings) std::cerr << "stillcut: " << options.cell << ": " << line << '\n';
@@ -131,6 +141,11 @@ void add_directions_command(CLI::App& app) {
                    "Id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm where the machine has no joints "
                    "(default: every posture of the map); again for a further one")
       ->allow_extra_args(false);
+  command
+      ->add_option("--grid", options->grid_mm,
+                   "Places so many mm apart, predicted, instead of the map's postures (maps without joints)")
+      ->check(CLI::Range(0.1, 1e4).description(""))
+      ->excludes("--posture");
   command
       ->add_option("--method", options->method,
                    "sdm: converged Floquet solution; zoa: zeroth order; paper: zeroth order with the receptance "

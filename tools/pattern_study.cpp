@@ -57,6 +57,16 @@ std::vector<ToolPath> region_patterns(const Cell& cell, const PatternQuestion& q
 
 std::string in_mm(double metres) { return csv_number(std::round(metres * 1e4) / 10.0) + " mm"; }
 
+// Of the locations that paths come to, so that a posture far away from all of this makes nothing seem near.
+double reach_of_used(const std::vector<RatedPattern>& patterns, const std::vector<Eigen::Vector2d>& places) {
+  std::set<std::size_t> used;
+  for (const RatedPattern& pattern : patterns)
+    for (const LocalCut& cut : pattern.on.cuts) used.insert(cut.location);
+  std::vector<Eigen::Vector2d> used_places;
+  for (const std::size_t i : used) used_places.push_back(places[i]);
+  return used_places.size() > 1 ? reach_of(used_places) : reach_of(places);
+}
+
 void check_covered(const Cell& cell, const RatedPattern& pattern, double reach) {
   if (pattern.on.farthest <= reach) return;
   throw InputError(cell.file.string(), 0,
@@ -170,7 +180,6 @@ PatternStudy study_patterns(const Cell& cell, const PatternQuestion& question,
   for (const PredictedPosture& location : locations)
     places.emplace_back(location.posture.position[0], location.posture.position[1]);
   check_places(cell, places);
-  const double reach = question.reach.value_or(reach_of(places));
 
   if (cell.region || question.paths.empty())
     for (ToolPath& path : region_patterns(cell, question, study.table.directions))
@@ -185,10 +194,11 @@ PatternStudy study_patterns(const Cell& cell, const PatternQuestion& question,
   }
   for (RatedPattern& pattern : study.patterns) {
     pattern.on = path_on_locations(pattern.path, places);
-    check_covered(cell, pattern, reach);
     if (pattern.on.cuts.empty())
       throw InputError(pattern.name, 0, "cuts nowhere in the plane: it has no feed move across X and Y");
   }
+  const double reach = question.reach.value_or(reach_of_used(study.patterns, places));
+  for (const RatedPattern& pattern : study.patterns) check_covered(cell, pattern, reach);
   solve_table(cell, question.cut, question.method, locations, questions_of(study.patterns, places.size()),
               question.threads, progress, study.table);
   for (RatedPattern& pattern : study.patterns) pattern.rating = rate_path(study.table, pattern.on, study.conditions);

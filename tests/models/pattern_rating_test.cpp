@@ -102,6 +102,8 @@ TEST(PathOnLocations, SaysHowFarThePathStraysFromWhatWasMeasured) {
   const auto spots = places(3, 3);
   EXPECT_NEAR(reach_of(spots), kLocationSpacing, 1e-12);
   EXPECT_EQ(reach_of(places(1, 1)), kInfinity);
+  EXPECT_NEAR(reach_of(std::vector<Eigen::Vector2d>{{0, 0}, {0.01, 0}, {0, 0.1}, {0.01, 0.1}}), 0.1, 1e-12)
+      << "rows farther apart than columns";
   EXPECT_LT(path_on_locations(polyline({{0, 0}, {0.1, 0.1}}), spots).farthest, kLocationSpacing);
   const auto far = path_on_locations(polyline({{0, 0}, {0.3, 0}}), spots);
   EXPECT_NEAR(far.farthest, 0.2, 2e-3);

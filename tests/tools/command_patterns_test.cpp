@@ -173,6 +173,28 @@ TEST(PatternsCommand, AFinerGridHasItsLocationsBetweenThePostures) {
   EXPECT_EQ(result["locations"][1]["x_mm"], 25.0);
 }
 
+TEST(PatternsCommand, DirectionsTakesTheSameGrid) {
+  const PocketCell cell;
+  const Finished done =
+      run({"stillcut", "directions", "cell.toml", "--method", "zoa", "--step", "90", "--grid", "25", "--csv", "-"},
+          cell.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const CsvTable table = parse_csv(done.out, "stdout");
+  EXPECT_EQ(table.rows().size(), 25U * 4U);
+  EXPECT_EQ(table.rows()[4].fields[0], "25,0,0");
+}
+
+TEST(PatternsCommand, MeasuredPlacesMayLieFartherApartOneWayThanTheOther) {
+  const PocketCell cell;
+  const std::string file = (cell.path() / "map" / "postures.csv").string();
+  std::ofstream postures{file};
+  postures << "posture,x_mm,y_mm,z_mm\n";
+  for (int i = 0; i < 9; ++i)
+    postures << i + 1 << ',' << (i < 8 ? 10 * (i % 4) + 35 : 5000) << ',' << 100 * (i / 4) << ",0\n";
+  postures.close();
+  EXPECT_EQ(patterns(cell, {}).exit_code, 0) << "rows 100 mm apart, and a posture far away";
+}
+
 TEST(PatternsCommand, DrawsItsPictures) {
   const PocketCell cell;
   for (const std::string picture : {"ranking", "field", "lobes", "path"}) {
