@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "dsp/numbers.hpp"
-#include "models/path_locations.hpp"
+#include "models/places.hpp"
 
 namespace stillcut {
 namespace {
@@ -58,6 +58,7 @@ struct Range {
 Range range_of(const std::vector<double>& axes) {
   Range range{median_axis(axes)};
   std::vector<double> distances;
+  distances.reserve(axes.size());
   for (const double axis : axes) distances.push_back(axis_angle(axis, range.middle));
   std::sort(distances.begin(), distances.end());
   range.half_width = distances[(3 * distances.size() - 1) / 4];

@@ -30,7 +30,7 @@ struct DirectionField {
 };
 
 // `tolerance`: how much less than the best still counts as nearly as good, 0.1 in the paper. Neighbours are locations
-// within 1.5 times the reach (models/path_locations.hpp), so that on a grid the diagonal ones are. Throws
+// within 1.5 times the reach (models/places.hpp), so that on a grid the diagonal ones are. Throws
 // std::invalid_argument for a tolerance outside 0 to 1.
 DirectionField direction_field(const DirectionTable& table, double tolerance = 0.1);
 

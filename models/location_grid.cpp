@@ -22,9 +22,9 @@ std::vector<Gathered> gather(std::vector<double> values, int most) {
   }
   while (static_cast<int>(lines.size()) > most) {
     std::size_t closest = 1;
-    const auto gap = [&](std::size_t i) { return lines[i].low - lines[i - 1].high; };
+    const auto width = [&](std::size_t i) { return lines[i].high - lines[i - 1].low; };  // of the two in one
     for (std::size_t i = 2; i < lines.size(); ++i)
-      if (gap(i) < gap(closest)) closest = i;
+      if (width(i) < width(closest)) closest = i;
     lines[closest - 1].high = lines[closest].high;
     lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(closest));
   }

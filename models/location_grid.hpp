@@ -8,7 +8,7 @@
 namespace stillcut {
 
 // Locations in columns and rows, and the lines half-way between these. Locations that do not stand in line are gathered
-// into at most `most_lines` columns and rows, the nearest first.
+// into at most `most_lines` columns and rows, the narrowest first.
 struct LocationGrid {
   std::vector<double> x_lines, y_lines;  // m, rising, between columns and between rows: one less than these
   std::vector<int> column, row;          // of each location

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "models/direction_table.hpp"
+#include "models/places.hpp"
 
 namespace stillcut {
 namespace {
@@ -18,7 +18,8 @@ struct Stretch {
 };
 
 void add_to(std::vector<Stretch>& stretches, double direction, double length, std::optional<Milling> milling) {
-  constexpr double kSame = 1e-6;  // rad
+  // Arcs have as many directions as chords; closer together than this they are kept as one.
+  constexpr double kSame = 5e-3;  // rad
   auto found = std::find_if(stretches.begin(), stretches.end(),
                             [&](const Stretch& known) { return axis_angle(known.direction, direction) < kSame; });
   if (found == stretches.end()) found = stretches.insert(found, Stretch{direction});
@@ -67,34 +68,6 @@ void add_cuts(std::vector<Stretch> stretches, std::size_t location, double same_
 
 }  // namespace
 
-double reach_of(std::span<const Eigen::Vector2d> places) {
-  if (places.size() < 2) return std::numeric_limits<double>::infinity();
-  // Prim's algorithm: from one place on, always the nearest one that is not joined yet.
-  std::vector<double> distance(places.size(), std::numeric_limits<double>::infinity());
-  std::vector<bool> joined(places.size(), false);
-  double longest = 0.0;
-  for (std::size_t joined_last = 0, count = 1; count < places.size(); ++count) {
-    joined[joined_last] = true;
-    std::size_t nearest = places.size();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (joined[i]) continue;
-      distance[i] = std::min(distance[i], (places[i] - places[joined_last]).norm());
-      if (nearest == places.size() || distance[i] < distance[nearest]) nearest = i;
-    }
-    longest = std::max(longest, distance[nearest]);
-    joined_last = nearest;
-  }
-  return longest;
-}
-
-std::size_t nearest_location(const Eigen::Vector2d& place, std::span<const Eigen::Vector2d> places) {
-  const auto nearest =
-      std::min_element(places.begin(), places.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-        return (a - place).squaredNorm() < (b - place).squaredNorm();
-      });
-  return static_cast<std::size_t>(nearest - places.begin());
-}
-
 PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::Vector2d> places,
                                   double same_direction) {
   if (places.empty()) throw std::invalid_argument("tool path: there are no locations to judge it at");
@@ -112,7 +85,7 @@ PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::V
     const int pieces = std::max(1, static_cast<int>(std::ceil(way.norm() / piece)));
     for (int i = 0; i < pieces; ++i) {
       const Eigen::Vector2d place = from + way * ((i + 0.5) / pieces);
-      const std::size_t location = nearest_location(place, places);
+      const std::size_t location = nearest_place(place, places);
       add_to(stretches[location], direction, length / pieces, move.milling);
       const double distance = (places[location] - place).norm();
       if (distance > result.farthest) result.farthest = distance, result.farthest_place = place;

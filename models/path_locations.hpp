@@ -24,18 +24,11 @@ struct PathOnLocations {
   Eigen::Vector2d farthest_place{0.0, 0.0};       // m
 };
 
-// How far a location speaks for its surroundings, m: the longest edge of the shortest tree that joins them all, which on
-// a grid is the spacing of its columns or rows, the wider one. Infinite for a single one, which speaks for everything.
-double reach_of(std::span<const Eigen::Vector2d> places);
-
 // Directions within `same_direction` (rad) of one in which much is cut are taken as that one, as with the chords of an
 // arc; what makes up less than a tenth of the cutting at a location, as links from pass to pass do, is left out. Moves
 // across the plane count; plunges and what a path calls slotting, its links, do not. Throws std::invalid_argument
 // without locations.
 PathOnLocations path_on_locations(const ToolPath& path, std::span<const Eigen::Vector2d> places,
                                   double same_direction = 0.0873);
-
-// The location that stands for a place: the nearest, of equally near ones the first.
-std::size_t nearest_location(const Eigen::Vector2d& place, std::span<const Eigen::Vector2d> places);
 
 }  // namespace stillcut

@@ -25,6 +25,7 @@ class Area {
     for (std::size_t i = 0; i < used_.size(); ++i) cells_[cell(grid_.column[i], grid_.row[i])].push_back(i);
     for (const std::size_t location : used_) {
       std::vector<const DirectionCurve*> curves;
+      curves.reserve(table.directions.size());
       for (const double direction : table.directions)
         curves.push_back(&curve_at(table.locations[location].curves, direction));
       curves_.push_back(curves);
@@ -162,6 +163,7 @@ double deepest_anywhere(const Area& area) {
 std::vector<double> depth_levels(double single, double deepest) {
   const double first = single > 0.0 ? kLowestLevel * single : 0.1 * deepest;
   std::vector<double> levels;
+  levels.reserve(kLevels + 1);
   for (int i = 0; i < kLevels; ++i) levels.push_back(first * std::pow(deepest / first, i / (kLevels - 1.0)));
   levels.back() = deepest;
   if (single > 0.0) levels.push_back(single);

@@ -83,7 +83,7 @@ VariationsAsked variations_of(const DirectionsOptions& options) {
 std::vector<std::string> postures_of(const Cell& cell, const DirectionsOptions& options) {
   if (!options.grid_mm) return options.postures;
   std::vector<std::string> places;
-  for (const PredictedPosture& place : study_locations(cell, read_cell_dynamics(cell), *options.grid_mm * 1e-3))
+  for (const PredictedPosture& place : study_locations(cell, read_cell_dynamics(cell), {}, *options.grid_mm * 1e-3))
     places.push_back(place.posture.id);  // as --posture takes places
   return places;
 }

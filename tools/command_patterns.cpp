@@ -1,9 +1,11 @@
 // stillcut patterns: which tool path suits the dynamics under it.
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -20,7 +22,7 @@ namespace {
 
 struct PatternsOptions : OutputOptions {
   std::string cell;
-  std::vector<std::string> paths;
+  std::vector<std::string> paths, postures;
   double step_deg = 5.0, max_depth_mm = 20.0, near_percent = 10.0, turning_percent = 2.0, margin_percent = 10.0;
   double rapid_mm_per_s = 200.0;
   std::string method = "sdm", objective = "asi", picture = "ranking", pattern, gcode, feed_map, milling;
@@ -32,15 +34,21 @@ struct PatternsOptions : OutputOptions {
 PatternQuestion question_of(const Cell& cell, const PatternsOptions& options) {
   PatternQuestion question;
   question.cut = require(cell, cell.cut, "cut");
-  if (options.radial_depth_mm) question.cut.radial_depth = *options.radial_depth_mm * 1e-3;
+  if (options.radial_depth_mm) {
+    question.cut.radial_depth = *options.radial_depth_mm * 1e-3;
+    question.cut.step_over = 0.0;  // lines as far apart as the cut is wide
+  }
   if (question.cut.radial_depth > require(cell, cell.tool, "tool").diameter)
     throw CLI::ValidationError("--radial-depth", "is more than the tool's diameter");
   if (options.milling == "down") question.cut.milling = Milling::down;
   if (options.milling == "up") question.cut.milling = Milling::up;
+  question.postures = options.postures;
   question.paths.assign(options.paths.begin(), options.paths.end());
-  const double steps = 180.0 / options.step_deg;
-  if (std::abs(steps - std::round(steps)) > 1e-9 || steps > 90.0)
-    throw CLI::ValidationError("--step", "must divide 180 degrees and be at least 2; give 5, 10 or 15, for example");
+  const double whole = options.method == "paper" ? 90.0 : 180.0, steps = whole / options.step_deg;
+  if (std::abs(steps - std::round(steps)) > 1e-9) {
+    throw CLI::ValidationError(
+        "--step", "must divide " + std::to_string(std::lround(whole)) + " degrees; give 5, 10 or 15, for example");
+  }
   question.step = deg_to_rad(options.step_deg);
   question.method = options.method == "sdm"   ? DirectionMethod::floquet
                     : options.method == "zoa" ? DirectionMethod::zeroth_order
@@ -72,13 +80,36 @@ plot::Figure figure_of(const PatternStudy& study, const PatternsOptions& options
   if (options.picture == "field") return field_figure(study);
   const RatedPattern& pattern = asked_pattern(study, options);
   if (options.picture == "lobes") return common_lobes_figure(study, pattern);
-  return path_figure(study, pattern, planned_depth(study, pattern), pattern.rating.common.speed);
+  const double depth = planned_depth(study, pattern);
+  if (!(depth > 0.0))
+    throw InputError(options.cell, 0, "--picture path: no depth is stable along all of \"" + pattern.name + "\"");
+  return path_figure(study, pattern, depth, pattern.rating.common.speed);
+}
+
+// Each output needs a place of its own.
+void check_places_of_output(const PatternsOptions& options) {
+  check_output_options(options);
+  const std::array<std::pair<const char*, const std::string*>, 4> outputs{{{"--csv", &options.csv},
+                                                                           {"--gcode", &options.gcode},
+                                                                           {"--feed-map", &options.feed_map},
+                                                                           {"--plot", &options.plot}}};
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const auto& [name, file] = outputs[i];
+    if (file->empty()) continue;
+    if (options.json && *file == "-")
+      throw CLI::ValidationError(name, "and --json both go to standard output; give one a file");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (*file == *outputs[j].second)
+        throw CLI::ValidationError(
+            name, std::string("goes to the same place as ") + outputs[j].first + "; give it a file of its own");
+    }
+  }
+  if (options.depth_mm && options.gcode.empty())
+    throw CLI::ValidationError("--depth", "is of the program; add --gcode FILE");
 }
 
 void run(const PatternsOptions& options) {
-  check_output_options(options);
-  if (!options.gcode.empty() && options.gcode == options.csv)
-    throw CLI::ValidationError("--gcode", "goes to the same place as --csv; give it a file of its own");
+  check_places_of_output(options);
   const Cell cell = read_cell(options.cell, {.dbc = false, .bus = false});
   Progress progress("patterns");
   const PatternStudy study =
@@ -99,8 +130,10 @@ void run(const PatternsOptions& options) {
   if (!options.gcode.empty()) {
     const std::optional<double> depth =
         options.depth_mm ? std::optional<double>(*options.depth_mm * 1e-3) : std::nullopt;
+    std::ostringstream program;  // first: an error must not leave an empty file where a program was
+    write_pattern_gcode(cell, study, asked_pattern(study, options), depth, program);
     OutputFile file(options.gcode);
-    write_pattern_gcode(cell, study, asked_pattern(study, options), depth, file.stream());
+    file.stream() << program.str();
     file.finish();
   }
   if (!options.plot.empty()) plot::write_figure(figure_of(study, options), options.plot);
@@ -115,6 +148,10 @@ void add_what_is_computed(CLI::App& command, PatternsOptions& options) {
   command
       .add_option("--path", options.paths,
                   "A tool path to rank with them: G-code or APT cutter locations; again for more")
+      ->allow_extra_args(false);
+  command
+      .add_option("--posture", options.postures,
+                  "Id of a posture that is a location (default: every one of the map); again for more")
       ->allow_extra_args(false);
   command
       .add_option("--step", options.step_deg, "Degrees from one direction, and angle of zig and zig-zag, to the next")
@@ -137,7 +174,8 @@ void add_what_is_computed(CLI::App& command, PatternsOptions& options) {
   command
       .add_option("--grid", options.grid_mm,
                   "Locations so many mm apart, predicted, instead of the map's postures (maps without joints)")
-      ->check(CLI::Range(0.1, 1e4).description(""));
+      ->check(CLI::Range(0.1, 1e4).description(""))
+      ->excludes("--posture");
   command
       .add_option("--reach", options.reach_mm,
                   "How far a location speaks for its surroundings, mm (default: the way to the nearest neighbour, "

@@ -13,7 +13,9 @@
 namespace stillcut {
 namespace {
 
+// Places over the box around the postures. Throws std::invalid_argument for too many.
 std::vector<Posture> grid_postures(const DynamicsMap& map, double spacing) {
+  constexpr double kMostPlaces = 2500;
   std::array<double, 2> low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
   for (const Posture& posture : map.postures) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -21,14 +23,21 @@ std::vector<Posture> grid_postures(const DynamicsMap& map, double spacing) {
       high[i] = std::max(high[i], posture.position[i]);
     }
   }
-  const auto steps = [&](std::size_t i) { return std::max(1.0, std::ceil((high[i] - low[i]) / spacing - 1e-9)); };
+  constexpr double kNoExtent = 1e-6;  // m
+  std::array<double, 2> steps{};
+  for (std::size_t i = 0; i < 2; ++i)
+    steps[i] = high[i] - low[i] < kNoExtent ? 0.0 : std::max(1.0, std::ceil((high[i] - low[i]) / spacing - 1e-9));
+  if ((steps[0] + 1.0) * (steps[1] + 1.0) > kMostPlaces)
+    throw std::invalid_argument("--grid: gives more than 2500 places; give a wider one");
   const auto in_mm = [](double metres) { return csv_number(std::round(metres * 1e6) / 1e3); };
+  const auto along = [&](std::size_t i, double step) {
+    return steps[i] == 0.0 ? low[i] : low[i] + (high[i] - low[i]) * step / steps[i];
+  };
   std::vector<Posture> postures;
-  for (double row = 0; row <= steps(1); ++row) {
-    for (double column = 0; column <= steps(0); ++column) {
+  for (double row = 0; row <= steps[1]; ++row) {
+    for (double column = 0; column <= steps[0]; ++column) {
       Posture posture;
-      posture.position = {low[0] + (high[0] - low[0]) * column / steps(0), low[1] + (high[1] - low[1]) * row / steps(1),
-                          map.postures.front().position[2]};
+      posture.position = {along(0, column), along(1, row), map.postures.front().position[2]};
       posture.id = in_mm(posture.position[0]) + "," + in_mm(posture.position[1]) + "," + in_mm(posture.position[2]);
       postures.push_back(posture);
     }
@@ -51,7 +60,7 @@ std::vector<DirectionCurve> curves_for(const Tool& tool, const Material& materia
 }  // namespace
 
 std::vector<PredictedPosture> study_locations(const Cell& cell, const CellDynamics& dynamics,
-                                              std::optional<double> grid) {
+                                              const std::vector<std::string>& postures, std::optional<double> grid) {
   if (grid && dynamics.map.has_joints) {
     throw InputError(require(cell, cell.dynamics, "dynamics").map.string(), 0,
                      "has joint angles, between which a place does not tell the posture; leave --grid out, and make a "
@@ -59,17 +68,19 @@ std::vector<PredictedPosture> study_locations(const Cell& cell, const CellDynami
   }
   std::vector<PredictedPosture> locations;
   if (!grid) {
-    for (const Posture& posture : dynamics.map.postures)
-      locations.push_back(stability_posture(cell, dynamics, posture.id));
+    std::vector<std::string> asked(postures);
+    if (asked.empty())
+      for (const Posture& posture : dynamics.map.postures) asked.push_back(posture.id);
+    for (const std::string& posture : asked) locations.push_back(stability_posture(cell, dynamics, posture));
     return locations;
   }
-  constexpr double kMostLocations = 2500;
-  const std::vector<Posture> postures = grid_postures(dynamics.map, *grid);
-  if (static_cast<double>(postures.size()) > kMostLocations)
-    throw InputError(cell.file.string(), 0, "--grid: gives more than 2500 locations; give a wider one");
-  for (const Posture& posture : postures) {
-    locations.push_back(
-        with_few_modes(predict_posture(dynamics.map, posture, dynamics.interpolation), kMostFloquetModes));
+  try {
+    for (const Posture& place : grid_postures(dynamics.map, *grid)) {
+      locations.push_back(
+          with_few_modes(predict_posture(dynamics.map, place, dynamics.interpolation), kMostFloquetModes));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(cell.file.string(), 0, error.what());
   }
   return locations;
 }

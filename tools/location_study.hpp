@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "models/direction_table.hpp"
@@ -12,10 +13,11 @@
 
 namespace stillcut {
 
-// The modes at every posture of the map, in its order; or, with `grid` (m), at places so far apart (at most) over the
-// box around the postures, which a map without joint angles can tell between its postures. Throws InputError.
+// The modes at the named postures, or at every one of the map in its order; or, with `grid` (m), at places so far apart
+// (at most) over the box around the postures, which a map without joint angles can tell between them. Throws
+// InputError.
 std::vector<PredictedPosture> study_locations(const Cell& cell, const CellDynamics& dynamics,
-                                              std::optional<double> grid);
+                                              const std::vector<std::string>& postures, std::optional<double> grid);
 
 // What a location is asked for beside the table's own directions.
 struct LocationQuestion {

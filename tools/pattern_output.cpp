@@ -108,8 +108,6 @@ std::string row_text(const RatedPattern& pattern) {
          fixed(rating.removal_rate * kCm3PerMin, 2, 10) + fixed(rating.time_per_depth * 1e-3 / 60.0, 1, 10) + "\n";
 }
 
-bool is_line_pattern(const RatedPattern& pattern) { return pattern.name.rfind("zig", 0) == 0; }
-
 std::string degrees(double direction) { return csv_number(pattern_deg(direction)) + "°"; }
 
 std::string pocket_text(const Pocket& pocket) {
@@ -158,8 +156,8 @@ void print_patterns(const PatternStudy& study, std::ostream& out) {
   out << "  pattern          ASI %   MSI %  min mm   max mm  pocket mm    rpm   cm³/min   min/mm\n";
   int lines = 0, left_out = 0;
   for (const RatedPattern& pattern : study.patterns) {
-    const bool shown = !is_line_pattern(pattern) || lines < kLinePatternsShown;
-    if (is_line_pattern(pattern)) ++lines;
+    const bool shown = !(pattern.source == PatternSource::lines) || lines < kLinePatternsShown;
+    if ((pattern.source == PatternSource::lines)) ++lines;
     shown ? void(out << row_text(pattern)) : void(++left_out);
   }
   if (left_out > 0) out << "  and " << left_out << " more zig and zig-zag below these (--csv lists them)\n";
@@ -192,16 +190,19 @@ void write_feed_map(const PatternStudy& study, std::ostream& out) {
                                       csv_number(pattern_mm(location.place.y())), csv_number(pattern_deg(direction)),
                                       csv_number(pattern_rpm(speed)), csv_number(depth * 1e3)});
   };
+  std::set<std::size_t> written;
   if (!study.plan.patches.empty()) {
     for (const PlannedPatch& patch : study.plan.patches)
       for (const std::size_t i : patch.locations) row(i, patch.direction, patch.spindle_speed, patch.depth_limit);
     return;
   }
-  for (std::size_t i = 0; i < study.table.locations.size(); ++i) {
-    const double direction = study.field.locations[i].chosen;
-    const Pocket pocket =
-        deepest_pocket(curve_at(study.table.locations[i].curves, direction).limits, study.table.speeds);
-    row(i, direction, pocket.speed, std::min(pocket.depth, study.table.max_depth));
+  const RatedPattern& pattern = study.optimized.path.moves.empty() ? study.patterns.front() : study.optimized;
+  for (const LocalCut& cut : pattern.on.cuts) {
+    const bool most = std::none_of(pattern.on.cuts.begin(), pattern.on.cuts.end(), [&](const LocalCut& other) {
+      return other.location == cut.location && other.share > cut.share;
+    });
+    if (most && written.insert(cut.location).second)
+      row(cut.location, cut.direction, pattern.rating.common.speed, pattern.rating.common.depth);
   }
 }
 

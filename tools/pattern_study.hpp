@@ -23,21 +23,26 @@ struct PatternQuestion {
   std::vector<std::filesystem::path> paths;  // further tool paths, files
   double step = 0.0;                         // rad, of directions and of the angles of zig and zig-zag; divides pi
   DirectionMethod method = DirectionMethod::floquet;
-  double max_depth = 0.02;      // m
-  bool face = false;            // the tool may go beyond the polygon
-  std::optional<double> grid;   // m: locations so far apart instead of the map's postures
-  std::optional<double> reach;  // m: how far a location speaks for its surroundings
-  double near_optimal = 0.1;    // how much less than the best is nearly as good
+  double max_depth = 0.02;            // m
+  bool face = false;                  // the tool may go beyond the polygon
+  std::vector<std::string> postures;  // ids of those that are the locations; empty: all of the map
+  std::optional<double> grid;         // m: locations so far apart instead of the map's postures
+  std::optional<double> reach;        // m: how far a location speaks for its surroundings
+  double near_optimal = 0.1;          // how much less than the best is nearly as good
   PlanSettings plan;
   double rapid_rate = 0.2;  // m/s
   int threads = 1;
 };
 
+enum class PatternSource { lines, loops, file, plan };
+
 struct RatedPattern {
   std::string name;
+  PatternSource source = PatternSource::lines;
+  std::string file;  // of a path that comes from one
   ToolPath path;
-  PathOnLocations on;
-  PatternRating rating;
+  PathOnLocations on{};
+  PatternRating rating{};
 };
 
 struct PatternStudy {
@@ -63,8 +68,10 @@ PatternStudy study_patterns(const Cell& cell, const PatternQuestion& question,
 // The pattern of that name, "optimized" for the plan. Throws std::invalid_argument, with the names there are.
 const RatedPattern& pattern_named(const PatternStudy& study, const std::string& name);
 
-// The limit at a location along any direction, at a speed, m: of the directions that were computed beside it the lower.
-double limit_along(const DirectionTable& table, std::size_t location, double direction, double spindle_speed);
+// The limit at a location along any direction, at a speed, m: of the directions that were computed beside it the lower;
+// cut to and fro the lower of both ways.
+double limit_along(const DirectionTable& table, std::size_t location, double direction, double spindle_speed,
+                   bool to_and_fro = false);
 
 void write_patterns_csv(const PatternStudy& study, std::ostream& out);
 nlohmann::ordered_json patterns_json(const PatternStudy& study);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "models/places.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -62,7 +64,7 @@ void add_outline(const PatternStudy& study, plot::Panel& panel, Extent& extent) 
   }
 }
 
-bool is_line(const RatedPattern& pattern) { return pattern.name.rfind("zig", 0) == 0; }
+bool is_line(const RatedPattern& pattern) { return pattern.source == PatternSource::lines; }
 
 double reach_mm(const PatternStudy& study) {
   std::vector<Eigen::Vector2d> places;
@@ -209,9 +211,9 @@ plot::Figure common_lobes_figure(const PatternStudy& study, const RatedPattern& 
 plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern, double axial_depth,
                          double spindle_speed) {
   struct Class {
-    double above;  // margin
-    plot::Color color;
-    const char* label;
+    double above = 0.0;  // margin
+    plot::Color color{};
+    const char* label = "";
   };
   static constexpr std::array<Class, 4> kClasses{{{0.5, plot::kBlue, "margin over 50 %"},
                                                   {0.2, plot::kGreen, "20 to 50 %"},
@@ -221,13 +223,19 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
   for (const LocationLimits& location : study.table.locations) places.push_back(location.place);
   const double piece = 1e-3 * reach_mm(study) / 4.0;
   std::array<plot::Line, kClasses.size()> lines;
-  plot::Line air;
+  plot::Line air, links;
   Extent extent;
+  const bool to_and_fro =
+      std::any_of(pattern.on.cuts.begin(), pattern.on.cuts.end(), [](const LocalCut& cut) { return cut.alternating; });
   for (const PathMove& move : pattern.path.moves) {
     const Eigen::Vector2d from = move.from.head<2>(), way = move.to.head<2>() - from;
     if (way.norm() < 1e-9) continue;
     extent.take(1e3 * move.from.x(), 1e3 * move.from.y());
     extent.take(1e3 * move.to.x(), 1e3 * move.to.y());
+    if (move.cutting && move.milling == Milling::slot) {
+      add_stroke(links, 1e3 * move.from.x(), 1e3 * move.from.y(), 1e3 * move.to.x(), 1e3 * move.to.y());
+      continue;
+    }
     if (!move.cutting) {
       add_stroke(air, 1e3 * move.from.x(), 1e3 * move.from.y(), 1e3 * move.to.x(), 1e3 * move.to.y());
       continue;
@@ -236,8 +244,9 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
     const int pieces = std::max(1, static_cast<int>(std::ceil(way.norm() / piece)));
     for (int i = 0; i < pieces; ++i) {
       const Eigen::Vector2d a = from + way * (static_cast<double>(i) / pieces), b = from + way * ((i + 1.0) / pieces);
-      const std::size_t location = nearest_location(0.5 * (a + b), places);
-      const double margin = limit_along(study.table, location, std::atan2(way.y(), way.x()), speed) / axial_depth - 1.0;
+      const std::size_t location = nearest_place(0.5 * (a + b), places);
+      const double margin =
+          limit_along(study.table, location, std::atan2(way.y(), way.x()), speed, to_and_fro) / axial_depth - 1.0;
       std::size_t c = 0;
       while (margin < kClasses[c].above) ++c;
       add_stroke(lines[c], 1e3 * a.x(), 1e3 * a.y(), 1e3 * b.x(), 1e3 * b.y());
@@ -250,6 +259,10 @@ plot::Figure path_figure(const PatternStudy& study, const RatedPattern& pattern,
   air.opacity = 0.5;
   air.dashed = true;
   panel.lines.push_back(air);
+  links.color = plot::kGrey;
+  links.width = 2.2;
+  links.label = links.x.empty() ? "" : "links, cut to both sides: not rated";
+  panel.lines.push_back(links);
   for (std::size_t c = 0; c < kClasses.size(); ++c) {
     lines[c].color = kClasses[c].color;
     lines[c].width = 2.2;

@@ -6,6 +6,7 @@
 #include "drivers/files/input_error.hpp"
 #include "dsp/numbers.hpp"
 #include "models/machining.hpp"
+#include "models/places.hpp"
 
 namespace stillcut {
 namespace {
@@ -38,12 +39,10 @@ FeedMap read_feed_map(const std::filesystem::path& file) {
   }
   if (map.proposals.empty())
     throw InputError(file.string(), 0, "has no row; write one with stillcut patterns CELL --feed-map");
-  for (const FeedProposal& proposal : map.proposals) {
-    double nearest = kInfinity;
-    for (const FeedProposal& other : map.proposals)
-      if (&other != &proposal) nearest = std::min(nearest, distance_between(other, proposal));
-    map.reach = std::max(map.reach, nearest);
-  }
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(map.proposals.size());
+  for (const FeedProposal& proposal : map.proposals) places.emplace_back(proposal.x, proposal.y);
+  map.reach = reach_of(places);
   return map;
 }
 

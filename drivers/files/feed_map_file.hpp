@@ -13,7 +13,7 @@ struct FeedProposal {
 
 struct FeedMap {
   std::vector<FeedProposal> proposals;
-  double reach = 0.0;  // m: how far one holds, the longest way from one to its nearest neighbour
+  double reach = 0.0;  // m: how far one holds (models/places.hpp)
 };
 
 // Columns x_mm, y_mm and feed_direction_deg; spindle_speed_rpm and a_lim_mm may be there for people. Throws InputError

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dsp/numbers.hpp"
+#include "models/places.hpp"
 #include "tests/models/direction_table_cases.hpp"
 
 namespace stillcut {

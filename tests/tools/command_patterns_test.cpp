@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "drivers/files/csv.hpp"
@@ -149,6 +150,72 @@ TEST(PatternsCommand, APathFromAFileIsRatedAsThePatternItIs) {
   EXPECT_FALSE(alone.contains("optimized"));
 }
 
+// A file is a program with heights of its own, and need not fill the region.
+TEST(PatternsCommand, APathFromAFileIsNeitherWrittenAgainNorTakenForTheOptimum) {
+  const PocketCell cell;
+  std::ofstream{cell.path() / "line.nc"} << "G21 G90\nM3 S3000\nG0 X20 Y50 Z5\nG1 Z-3 F100\nX80\n";
+  const json result = answer(cell, {"--objective", "time", "--path", "line.nc"});
+  EXPECT_LT(named(result, "line")["time_s_per_mm"], result["optimized"]["time_s_per_mm"]);
+  EXPECT_NE(result["optimized"]["made_of"], "line");
+  std::ofstream{cell.path() / "kept.nc"} << "a program\n";
+  const Finished refused = patterns(cell, {"--path", "line.nc", "--pattern", "line", "--gcode", "kept.nc"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("line.nc: is a program already"));
+  EXPECT_EQ(patterns(cell, {"--pattern", "zig 7", "--gcode", "kept.nc"}).exit_code, 2);
+  EXPECT_EQ(content_of(cell.path() / "kept.nc"), "a program\n") << "an error leaves what was there";
+}
+
+// Of postures that do not stand in columns and rows a patch holds parts that are nearer to a neighbour's.
+TEST(PatternsCommand, ThePlannedDepthIsStableAlongThePathOverScatteredPostures) {
+  const PocketCell cell;
+  const std::vector<Eigen::Vector2d> places{{20, 0}, {80, 100}};
+  std::ofstream{cell.path() / "map" / "postures.csv"} << "posture,x_mm,y_mm,z_mm\n1,20,0,0\n2,80,100,0\n";
+  std::ofstream{cell.path() / "map" / "modes.csv"}
+      << "posture,mode,frequency_hz,damping_ratio,stiffness_n_per_m,ux,uy,uz\n"
+         "1,1,490,0.03,2e6,1,0,0\n1,2,530,0.03,2e7,0,1,0\n2,1,500,0.03,2e6,0,1,0\n2,2,540,0.03,2e7,1,0,0\n";
+  std::string text = content_of(cell.path() / "cell.toml");
+  text.replace(text.find("posture = \"5\""), 13, "posture = \"1\"");
+  std::ofstream{cell.path() / "cell.toml"} << text;
+  const Finished done = patterns(cell, {"--turning-cost", "0.1", "--gcode", "plan.nc", "--json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json optimized = json::parse(done.out)["optimized"];
+  ASSERT_GT(optimized["patches"].size(), 1U);
+  std::set<std::tuple<std::string, int, int>> cuts;  // posture, direction, speed
+  for (const PathMove& move : read_tool_path(cell.path() / "plan.nc").moves) {
+    const Eigen::Vector2d way = 1e3 * (move.to - move.from).head<2>();
+    if (!move.cutting || way.norm() < 5.0) continue;
+    const int direction = static_cast<int>(std::lround(rad_to_deg(std::atan2(way.y(), way.x())) + 360.0) % 180);
+    for (const double share : {0.05, 0.5, 0.95}) {
+      const Eigen::Vector2d point = 1e3 * move.from.head<2>() + share * way;
+      const bool first = (point - places[0]).norm() < (point - places[1]).norm();
+      cuts.emplace(first ? "1" : "2", direction, std::lround(rad_s_to_rpm(move.spindle_speed)));
+    }
+  }
+  EXPECT_GT(cuts.size(), 2U) << "a patch has both postures in it";
+  for (const auto& [posture, direction, speed] : cuts) {
+    const std::string speeds = std::to_string(speed) + ":" + std::to_string(speed + 1) + ":2";
+    const Finished lobes = run({"stillcut", "lobes", "cell.toml", "--posture", posture, "--feed-direction",
+                                std::to_string(direction), "--method", "zoa", "--speed", speeds, "--csv", "-"},
+                               cell.path());
+    ASSERT_EQ(lobes.exit_code, 0) << lobes.err;
+    const CsvTable points = parse_csv(lobes.out, "stdout");
+    EXPECT_LE(optimized["axial_depth_mm"].get<double>(), std::stod(points.rows()[0].fields[1]))
+        << posture << ", " << direction << " deg, " << speed << " rpm";
+  }
+}
+
+TEST(PatternsCommand, PosturesAtOnePlaceAreRefusedUnlessOneIsChosen) {
+  const PocketCell cell;
+  std::ofstream{cell.path() / "map" / "postures.csv", std::ios::app} << "high,50,50,40\n";
+  std::ofstream{cell.path() / "map" / "modes.csv", std::ios::app} << "high,1,490,0.03,2e6,1,0,0\n";
+  const Finished refused = patterns(cell, {});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("postures 5 and high have the same x_mm and y_mm"));
+  const Finished chosen = patterns(cell, {"--posture", "1", "--posture", "3", "--posture", "high", "--json"});
+  ASSERT_EQ(chosen.exit_code, 0) << chosen.err;
+  EXPECT_EQ(json::parse(chosen.out)["locations"].size(), 3U);
+}
+
 TEST(PatternsCommand, GivesTheSameBytesOnAnyNumberOfThreads) {
   const PocketCell cell;
   EXPECT_EQ(patterns(cell, {"--jobs", "1", "--json"}).out, patterns(cell, {"--jobs", "3", "--json"}).out);
@@ -182,6 +249,15 @@ TEST(PatternsCommand, DirectionsTakesTheSameGrid) {
   const CsvTable table = parse_csv(done.out, "stdout");
   EXPECT_EQ(table.rows().size(), 25U * 4U);
   EXPECT_EQ(table.rows()[4].fields[0], "25,0,0");
+  std::ofstream{cell.path() / "map" / "postures.csv"} << "posture,x_mm,y_mm,z_mm\n1,0,7,0\n2,50,7,0\n";
+  std::ofstream{cell.path() / "map" / "modes.csv"} << "posture,mode,frequency_hz,damping_ratio,stiffness_n_per_m,ux,uy,"
+                                                      "uz\n1,1,490,0.03,2e6,1,0,0\n2,1,490,0.03,2e6,1,"
+                                                      "0,0\n";
+  const Finished line =
+      run({"stillcut", "directions", "cell.toml", "--method", "zoa", "--step", "90", "--grid", "25", "--csv", "-"},
+          cell.path());
+  ASSERT_EQ(line.exit_code, 0) << line.err;
+  EXPECT_EQ(parse_csv(line.out, "stdout").rows().size(), 3U * 4U) << "postures in a line give places in a line";
 }
 
 TEST(PatternsCommand, MeasuredPlacesMayLieFartherApartOneWayThanTheOther) {
@@ -239,6 +315,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{kSquare + "\nislands_mm = [[[80, 80], [120, 80], [120, 90]]]", {}, 3, "islands_mm"},
         Refusal{"polygon_mm = [[500, 0], [600, 0], [600, 100], [500, 100]]", {}, 3, "from the nearest posture"},
         Refusal{"polygon_mm = [[0, 0], [300, 0], [300, 100], [0, 100]]", {}, 3, "measure there, or say with --reach"},
+        Refusal{kSquare, {"--grid", "0.5"}, 3, "gives more than 2500 places"},
+        Refusal{kSquare, {"--json", "--gcode", "-"}, 2, "both go to standard output"},
+        Refusal{kSquare, {"--gcode", "a.nc", "--feed-map", "a.nc"}, 2, "goes to the same place as --gcode"},
+        Refusal{kSquare, {"--depth", "3"}, 2, "add --gcode FILE"},
         Refusal{kSquare, {"--path", "left.nc"}, 3, "left.nc:4: G41"},
         Refusal{kSquare, {"--path", "none.nc"}, 3, "none.nc"},
         Refusal{kSquare, {"--pattern", "zig 45", "--gcode", "a.nc"}, 2, "there is no pattern \"zig 45\""},
