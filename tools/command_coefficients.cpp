@@ -155,6 +155,8 @@ int decimals_of(double value, double error) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(grain))), 0, kMost);
 }
 
+std::string toml_string(const std::string& text) { return nlohmann::json(text).dump(); }  // JSON's escapes are TOML's
+
 void print_table(const Identified& found) {
   std::printf("%s\n", tests_text(found).c_str());
   for (std::size_t i = 0; i < found.recorded.names.size(); ++i) {
@@ -173,7 +175,7 @@ void print_table(const Identified& found) {
     if (std::isnan(fit.r_squared)) continue;
     std::printf("%s: R² %.4f, scatter of a mean force %.3g N\n", kForceNames.at(axis), fit.r_squared, fit.scatter);
   }
-  std::printf("\n[material]\nname = \"%s\"\n", found.material.empty() ? "unnamed" : found.material.c_str());
+  std::printf("\n[material]\nname = %s\n", toml_string(found.material.empty() ? "unnamed" : found.material).c_str());
   for (std::size_t i = 0; i < kCoefficientKeys.size(); ++i) {
     const double value = value_of(found.fit.value, i);
     const int decimals = std::max(1, decimals_of(value, value_of(found.fit.standard_error, i)));

@@ -4,14 +4,14 @@
 #include <array>
 #include <cmath>
 
-#include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
 
 namespace stillcut {
 namespace {
 
-constexpr double kLongestGap = 0.25;  // turns without a sample
-constexpr double kCutting = 0.5;      // of the usual force in the cut: a turn below is entry, exit or air
+constexpr double kLongestGap = 0.25;   // turns without a sample
+constexpr double kCutting = 0.5;       // of the usual force in the cut: a turn below is entry, exit or air
+constexpr double kLargestForce = 1e6;  // N: no machine tool's
 constexpr double kRoundingTurns = 1e-6;
 const std::array<std::string, 4> kForceColumns{"time_s", "fx_n", "fy_n", "fz_n"};
 
@@ -114,6 +114,13 @@ void check_samples(const ForceRecording& recording, const RecordedSpan& span, do
 
 }  // namespace
 
+double force_in(const CsvTable& table, const CsvRow& row, std::size_t column) {
+  const double force = table.number(row, column);
+  if (!(std::abs(force) <= kLargestForce))
+    table.fail(row, column, csv_number(force) + " is out of range; give N, up to " + csv_number(kLargestForce));
+  return force;
+}
+
 ForceRecording read_force_recording(const std::filesystem::path& file) {
   const CsvTable table = read_csv(file);
   check_column_names(table, kForceColumns);
@@ -127,8 +134,8 @@ ForceRecording read_force_recording(const std::filesystem::path& file) {
           row, columns[0],
           csv_number(time) + " does not come after " + csv_number(recording.time.back()) + "; sort the rows by time");
     recording.time.push_back(time);
-    recording.force.emplace_back(table.number(row, columns[1]), table.number(row, columns[2]),
-                                 table.number(row, columns[3]));
+    recording.force.emplace_back(force_in(table, row, columns[1]), force_in(table, row, columns[2]),
+                                 force_in(table, row, columns[3]));
   }
   if (recording.time.size() < 2)
     throw InputError(table.file(), table.header_line(), "holds no two samples; add the recorded rows");

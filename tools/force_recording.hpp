@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/files/csv.hpp"
+
 namespace stillcut {
 
 struct ForceRecording {
@@ -15,6 +17,9 @@ struct ForceRecording {
   std::vector<double> time;            // s, rising
   std::vector<Eigen::Vector3d> force;  // N on the tool, workpiece axes
 };
+
+// A force of a row, N. Throws InputError with line and column for what no cut exerts.
+double force_in(const CsvTable& table, const CsvRow& row, std::size_t column);
 
 // Columns time_s, fx_n, fy_n, fz_n, as `stillcut simulate --csv` writes them; others are ignored. Throws InputError
 // with file, line and column.

@@ -10,6 +10,7 @@
 namespace stillcut {
 namespace {
 
+constexpr double kLeast = 1e-6;  // mm, rpm
 constexpr double kLargestFeed_mm = 10.0, kDeepestSlot_mm = 1000.0, kFastest_rpm = 1e6;
 constexpr double kLargestDrift = 0.05;  // of the mean force, from the first half of a cut to the second
 constexpr const char* kListName = "tests.csv";
@@ -18,11 +19,10 @@ const std::array<std::string, 5> kMeanColumns{"feed_per_tooth_mm", "axial_depth_
 const std::array<std::string, 5> kListColumns{"file", "feed_per_tooth_mm", "axial_depth_mm", "spindle_speed_rpm",
                                               "feed_direction_deg"};
 
-// A number above 0 and up to `most`.
 double positive(const CsvTable& table, const CsvRow& row, const std::string& name, double most, const char* unit) {
   const std::size_t column = table.require_column(name);
   const double value = table.number(row, column);
-  if (!(value > 0.0 && value <= most))
+  if (!(value >= kLeast && value <= most))
     table.fail(row, column,
                csv_number(value) + " is out of range; give " + unit + " above 0, up to " + csv_number(most));
   return value;
@@ -67,14 +67,15 @@ std::vector<SlotTest> read_slot_tests(const std::filesystem::path& file) {
     SlotTest& test = tests.emplace_back(described_test(table, row));
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       test.mean_force[axis] =
-          table.number(row, table.require_column(kMeanColumns.at(static_cast<std::size_t>(axis) + 2)));
+          force_in(table, row, table.require_column(kMeanColumns.at(static_cast<std::size_t>(axis) + 2)));
   }
   return tests;
 }
 
 RecordedTests read_recorded_tests(const std::filesystem::path& path, const Tool& tool,
                                   std::optional<double> feed_direction, const ForceWindows& windows) {
-  const std::filesystem::path list = std::filesystem::is_directory(path) ? path / kListName : path;
+  std::error_code ignored;  // what is no folder is read as a list, which says what is wrong
+  const std::filesystem::path list = std::filesystem::is_directory(path, ignored) ? path / kListName : path;
   const CsvTable table = read_rows(list, kListColumns, 4);
   RecordedTests read;
   for (const CsvRow& row : table.rows()) {
@@ -99,10 +100,17 @@ RecordedTests read_recorded_tests(const std::filesystem::path& path, const Tool&
   return read;
 }
 
+namespace {
+
+// Without what the way from mm to m and back leaves behind.
+std::string in_mm(double length) { return csv_number(std::round(length * 1e12) / 1e9); }
+
+}  // namespace
+
 void write_slot_tests(std::ostream& out, const std::vector<SlotTest>& tests) {
   write_csv_row(out, kMeanColumns);
   for (const SlotTest& test : tests) {
-    const std::array<std::string, 5> fields{csv_number(test.feed_per_tooth * 1e3), csv_number(test.axial_depth * 1e3),
+    const std::array<std::string, 5> fields{in_mm(test.feed_per_tooth), in_mm(test.axial_depth),
                                             csv_number(test.mean_force.x()), csv_number(test.mean_force.y()),
                                             csv_number(test.mean_force.z())};
     write_csv_row(out, fields);
