@@ -137,23 +137,24 @@ ResidualPattern pattern_in(const WeightedFit& fit, const SlotVector& weight, con
   return {as_normal(t, freedom), std::abs(size) * column.cwiseAbs().maxCoeff() / largest_force};
 }
 
-// Squares about the mean, as wide as they are: what a straight line cannot follow.
-SlotVector squares(const std::vector<SlotTest>& tests, double SlotTest::*what, bool times_feed) {
+// Grows with the square of a quantity beside the depth: a curve over the feed where `what` is the feed, more or less
+// than in proportion where it is the depth.
+SlotVector depth_times_square(const std::vector<SlotTest>& tests, double SlotTest::*what) {
   SlotVector column(static_cast<Eigen::Index>(tests.size()));
   double mean = 0.0;
   for (const SlotTest& test : tests) mean += test.*what / static_cast<double>(tests.size());
   for (Eigen::Index i = 0; i < column.size(); ++i) {
     const SlotTest& test = tests[static_cast<std::size_t>(i)];
     const double off = test.*what / mean - 1.0;
-    column[i] = off * off * test.axial_depth * (times_feed ? test.feed_per_tooth : 1.0);
+    column[i] = test.axial_depth * (what == &SlotTest::axial_depth ? off : off * off);
   }
   return column;
 }
 
 void judge_axes(const std::vector<SlotTest>& tests, const SlotEquations& equations, const WeightedFit& fit,
                 const SlotVector& weight, std::array<AxisFit, 3>& axes) {
-  const SlotVector bent_by_feed = squares(tests, &SlotTest::feed_per_tooth, false);
-  const SlotVector bent_by_depth = squares(tests, &SlotTest::axial_depth, true);
+  const SlotVector bent_by_feed = depth_times_square(tests, &SlotTest::feed_per_tooth);
+  const SlotVector bent_by_depth = depth_times_square(tests, &SlotTest::axial_depth);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     AxisFit& of = axes[static_cast<std::size_t>(axis)];
     const SlotVector force = axis_of(equations.force, axis);

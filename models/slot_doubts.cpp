@@ -68,8 +68,8 @@ std::vector<std::string> doubts(const SlotFit& fit, const Tool& tool, const std:
                kAxes.at(axis), 100.0 * feed.share));
     if (depth.significance > kRare && depth.share > kVisible)
       lines.push_back(
-          line("%s does not follow the axial depth as the tool's shape says (by %.1f %%): was the depth "
-               "zeroed on the surface?",
+          line("%s does not follow the axial depth as the tool's shape says (by %.1f %%): was the depth zeroed on the "
+               "surface, does runout or vibration keep teeth out?",
                kAxes.at(axis), 100.0 * depth.share));
   }
   double smallest = tests.front().feed_per_tooth;

@@ -36,11 +36,13 @@ struct Identified {
 
 struct CoefficientKey {
   const char* name;
-  double unit;  // SI of one
+  double unit;           // SI of one
+  bool may_be_negative;  // in a cell file
 };
-constexpr std::array kCoefficientKeys{CoefficientKey{"ktc_mpa", 1e6},      CoefficientKey{"krc_mpa", 1e6},
-                                      CoefficientKey{"kac_mpa", 1e6},      CoefficientKey{"kte_n_per_mm", 1e3},
-                                      CoefficientKey{"kre_n_per_mm", 1e3}, CoefficientKey{"kae_n_per_mm", 1e3}};
+constexpr std::array kCoefficientKeys{
+    CoefficientKey{"ktc_mpa", 1e6, false},      CoefficientKey{"krc_mpa", 1e6, false},
+    CoefficientKey{"kac_mpa", 1e6, true},       CoefficientKey{"kte_n_per_mm", 1e3, false},
+    CoefficientKey{"kre_n_per_mm", 1e3, false}, CoefficientKey{"kae_n_per_mm", 1e3, true}};
 constexpr std::array kForceNames{"fx", "fy", "fz"};
 
 double value_of(const SixCoefficients& six, std::size_t i) {
@@ -155,6 +157,14 @@ int decimals_of(double value, double error) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(grain))), 0, kMost);
 }
 
+// Without the sign of a value that the digits do not show.
+std::string fixed(double value, int decimals) {
+  const double grain = std::pow(10.0, decimals);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, std::round(value * grain) / grain + 0.0);
+  return text.data();
+}
+
 std::string toml_string(const std::string& text) { return nlohmann::json(text).dump(); }  // JSON's escapes are TOML's
 
 void print_table(const Identified& found) {
@@ -167,7 +177,8 @@ void print_table(const Identified& found) {
   std::printf("\n%-14s %12s  ± standard error\n", "", "value");
   for (std::size_t i = 0; i < kCoefficientKeys.size(); ++i) {
     const double value = value_of(found.fit.value, i), error = value_of(found.fit.standard_error, i);
-    std::printf("%-14s %12.*f  ± %.2g\n", kCoefficientKeys.at(i).name, decimals_of(value, error), value, error);
+    std::printf("%-14s %12s  ± %.2g\n", kCoefficientKeys.at(i).name, fixed(value, decimals_of(value, error)).c_str(),
+                error);
   }
   std::printf("\n");
   for (std::size_t axis = 0; axis < kForceNames.size(); ++axis) {
@@ -179,7 +190,9 @@ void print_table(const Identified& found) {
   for (std::size_t i = 0; i < kCoefficientKeys.size(); ++i) {
     const double value = value_of(found.fit.value, i);
     const int decimals = std::max(1, decimals_of(value, value_of(found.fit.standard_error, i)));
-    std::printf("%s = %.*f\n", kCoefficientKeys.at(i).name, decimals, value);
+    const bool taken = value >= 0.0 || kCoefficientKeys.at(i).may_be_negative;
+    std::printf(taken ? "%s = %s\n" : "%s = 0.0  # fitted %s\n", kCoefficientKeys.at(i).name,
+                fixed(value, decimals).c_str());
   }
 }
 

@@ -12,6 +12,7 @@ namespace {
 constexpr double kLongestGap = 0.25;   // turns without a sample
 constexpr double kCutting = 0.5;       // of the usual force in the cut: a turn below is entry, exit or air
 constexpr double kLargestForce = 1e6;  // N: no machine tool's
+constexpr int kFewestTurns = 5;        // of a full slot: fewer are no steady cut
 constexpr double kRoundingTurns = 1e-6;
 const std::array<std::string, 4> kForceColumns{"time_s", "fx_n", "fy_n", "fz_n"};
 
@@ -96,10 +97,11 @@ RecordedSpan cutting_span(const ForceRecording& recording, const ForceIntegral& 
   }
   const int full_slot = static_cast<int>(std::ceil(turns_to_axis)) + 1;
   const int skipped = first > 0 ? full_slot : 1, left_out = first + count < turns ? full_slot : 0;
-  if (count - skipped - left_out < 1)
+  if (count - skipped - left_out < kFewestTurns)
     throw InputError(recording.file, 0,
                      "the cut lasts " + std::to_string(count) + " turns, entry and exit take " +
-                         std::to_string(skipped + left_out) + " of them; record a longer slot, or give --cut FROM:TO");
+                         std::to_string(skipped + left_out) + " of them; at least " + std::to_string(kFewestTurns) +
+                         " must be left: record a longer slot, or give --cut FROM:TO");
   return {begin + (first + skipped) * turn_s, begin + (first + count - left_out) * turn_s};
 }
 
