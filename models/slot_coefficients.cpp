@@ -18,7 +18,7 @@ constexpr double kApart = 1e-9;             // m: feeds closer than this are one
 constexpr double kWorstCondition = 1000.0;  // feeds that span some 0.2 % of their mean
 constexpr double kLargestWeightRatio = 50.0;  // of two axes' scatter: so few tests cannot know a larger one
 constexpr int kMostWeighings = 50;
-constexpr double kSettled = 1e-6;  // change of the scatter in a round, relative
+constexpr double kSettledScatter = 1e-6;  // change of the scatter in a round, relative
 
 using SlotVector = Eigen::VectorXd;
 using SlotMatrix = Eigen::MatrixXd;
@@ -221,7 +221,7 @@ SlotFit fit_slot_coefficients(const Tool& tool, const std::vector<SlotTest>& tes
     fit = weighted_fit(equations, weight);
     judge_scatter(fit, weight, result.axes);
     const SlotVector now = row_values(result.axes, rows, largest_scatter(result.axes) / kLargestWeightRatio);
-    if ((now - before).cwiseAbs().maxCoeff() < kSettled * largest) break;
+    if ((now - before).cwiseAbs().maxCoeff() < kSettledScatter * largest) break;
   }
   judge_axes(tests, equations, fit, weight, result.axes);
   result.value = fit.value;
