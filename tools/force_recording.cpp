@@ -78,6 +78,7 @@ RecordedSpan cutting_span(const ForceRecording& recording, const ForceIntegral& 
   const double begin = recording.time.front();
   const auto turns = static_cast<int>(std::floor((recording.time.back() - begin) / turn_s + kRoundingTurns));
   std::vector<double> size;
+  size.reserve(static_cast<std::size_t>(turns));
   for (int k = 0; k < turns; ++k)
     size.push_back(offset.corrected(integral, {begin + k * turn_s, begin + (k + 1) * turn_s}).norm());
   if (size.empty()) throw InputError(recording.file, 0, "is shorter than a turn of the spindle; record more turns");
@@ -162,11 +163,10 @@ SteadyForce steady_force(const ForceRecording& recording, double turn_s, double 
       throw InputError(recording.file, 0,
                        "--zero " + seconds(air) + " overlaps the cut, " + seconds(steady.span) + "; give air only");
   steady.mean = offset.corrected(integral, steady.span);
-  if (steady.turns > 1) {
-    const double middle = steady.span.from + (steady.turns / 2) * turn_s;
-    steady.drift = (offset.corrected(integral, {middle, steady.span.from + 2 * (steady.turns / 2) * turn_s}) -
-                    offset.corrected(integral, {steady.span.from, middle}))
-                       .norm();
+  if (const int half = steady.turns / 2; half > 0) {
+    const double middle = steady.span.from + half * turn_s, end = middle + half * turn_s;
+    steady.drift =
+        (offset.corrected(integral, {middle, end}) - offset.corrected(integral, {steady.span.from, middle})).norm();
   }
   return steady;
 }

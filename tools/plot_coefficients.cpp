@@ -14,6 +14,7 @@ constexpr double kBeyond = 1.06;  // of the largest feed: where the lines end
 
 std::vector<double> depths_of(const std::vector<SlotTest>& tests) {
   std::vector<double> depths;
+  depths.reserve(tests.size());
   for (const SlotTest& test : tests) depths.push_back(test.axial_depth);
   std::sort(depths.begin(), depths.end());
   depths.erase(std::unique(depths.begin(), depths.end()), depths.end());

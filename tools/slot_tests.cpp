@@ -103,14 +103,14 @@ RecordedTests read_recorded_tests(const std::filesystem::path& path, const Tool&
 namespace {
 
 // Without what the way from mm to m and back leaves behind.
-std::string in_mm(double length) { return csv_number(std::round(length * 1e12) / 1e9); }
+std::string length_in_mm(double length) { return csv_number(std::round(length * 1e12) / 1e9); }
 
 }  // namespace
 
 void write_slot_tests(std::ostream& out, const std::vector<SlotTest>& tests) {
   write_csv_row(out, kMeanColumns);
   for (const SlotTest& test : tests) {
-    const std::array<std::string, 5> fields{in_mm(test.feed_per_tooth), in_mm(test.axial_depth),
+    const std::array<std::string, 5> fields{length_in_mm(test.feed_per_tooth), length_in_mm(test.axial_depth),
                                             csv_number(test.mean_force.x()), csv_number(test.mean_force.y()),
                                             csv_number(test.mean_force.z())};
     write_csv_row(out, fields);
