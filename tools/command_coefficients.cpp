@@ -95,7 +95,7 @@ Identified identify(const CoefficientsOptions& options) {
     throw InputError(source, 0, error.what());
   }
   for (const std::string& line : doubts(found.fit, found.tool, found.tests))
-    found.warnings.push_back(source + ": " + line);
+    found.warnings.push_back(std::string(source).append(": ").append(line));
   for (const std::string& line : found.warnings) std::cerr << "stillcut: " << line << '\n';
   return found;
 }

@@ -83,7 +83,8 @@ TEST(CoefficientsCommandRefuses, RefusesBadRecordings) {
   spoilt(header + "0,0,0,0\n1,0,0,0\n", "slots/0.07.csv: holds no force", "");
   spoilt(header + "0,1,1,1\n0.001,1,1,1\n", "slots/0.07.csv: is shorter than a turn", "");
   spoilt(header + "0,1,1,1\n2,1,1,1\n", "slots/0.07.csv: no sample at 0:2 s", "sample faster");
-  spoilt(recorded({10, 10, 10}, 0.0, 0.012, {.cut_s = 1.7}), "slots/0.07.csv: the cut lasts", "longer slot");
+  spoilt(dynamometer_recording({10, 10, 10}, 0.0, 0.012, {.cut_s = 1.7}), "slots/0.07.csv: the cut lasts",
+         "longer slot");
   spoilt("time_s,fx_n,fy_n\n0,1,1\n", "slots/0.07.csv:1: fz_n: ", "add it");
   (void)cell.write("slots/tests.csv", list + "none.csv,0.05,1,5000\n,0.05,1,5000\n");
   std::filesystem::copy(cell.path() / "slots/0.04.csv", cell.path() / "slots/0.07.csv",

@@ -62,8 +62,8 @@ struct Instrument {
 
 // What a dynamometer shows of a slot: air, the force growing as the tool enters, tooth passing and runout in the cut,
 // air; at a rate that fits no turn.
-inline std::string recorded(const Eigen::Vector3d& mean, double direction, double turn_s,
-                            const Instrument& instrument) {
+inline std::string dynamometer_recording(const Eigen::Vector3d& mean, double direction, double turn_s,
+                                         const Instrument& instrument) {
   std::ostringstream text;
   text.precision(12);
   text << "time_s,fx_n,fy_n,fz_n\n";
@@ -87,7 +87,8 @@ inline std::string recorded(const Eigen::Vector3d& mean, double direction, doubl
 inline std::string write_recordings(const SlotCell& cell, double direction, const Instrument& instrument) {
   std::string list = "file,feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm\n";
   for (const std::string feed : {"0.04", "0.07", "0.1"}) {
-    (void)cell.write("slots/" + feed + ".csv", recorded(cell.mean(std::stod(feed), 1.0), direction, 0.012, instrument));
+    (void)cell.write("slots/" + feed + ".csv",
+                     dynamometer_recording(cell.mean(std::stod(feed), 1.0), direction, 0.012, instrument));
     list += feed + ".csv," + feed + ",1,5000\n";
   }
   (void)cell.write("slots/tests.csv", list);
