@@ -20,6 +20,7 @@ int run_stillcut(int argc, char** argv) {
   CLI::App app{"Stillcut: chatter monitor and compensator for robots that mill", "stillcut"};
   app.require_subcommand(1);
   app.set_version_flag("--version", STILLCUT_VERSION);
+  add_coefficients_command(app);
   add_directions_command(app);
   add_patterns_command(app);
   add_doctor_command(app);

@@ -7,6 +7,7 @@
 
 namespace stillcut {
 
+void add_coefficients_command(CLI::App& app);
 void add_directions_command(CLI::App& app);
 void add_patterns_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
