@@ -15,7 +15,7 @@
 namespace stillcut {
 namespace {
 
-constexpr std::size_t kLeastPoints = 8, kPadding = 4;
+constexpr std::size_t kLeastInProfile = 8, kPadding = 4;
 constexpr double kMostUnknown = 0.1;   // gaps put power beside every line
 constexpr double kLeastRepeats = 1.9;  // twice, but for what the form that was removed shifts a slow wave
 constexpr double kHannReach = 2.0;     // a line's half width, in resolved frequencies
@@ -42,7 +42,8 @@ TextureSpectrum texture_spectrum(const HeightMap& map, ProfileDirection directio
   require_sound_map(map);
   const double spacing = profile_spacing(map, direction);
   const std::size_t points = direction == ProfileDirection::along ? map.along : map.across;
-  if (points < kLeastPoints) throw std::invalid_argument("a texture's spectrum needs profiles of eight points or more");
+  if (points < kLeastInProfile)
+    throw std::invalid_argument("a texture's spectrum needs profiles of eight points or more");
   const std::size_t length = kPadding * std::bit_ceil(points), bins = length / 2 + 1;
   const std::vector<double> window = hann(points);
   Eigen::FFT<double> transform;

@@ -14,7 +14,7 @@
 namespace stillcut {
 namespace {
 
-constexpr int kWidth = 1200, kHeight = 900;
+constexpr int kSheetWidth = 1200, kSheetHeight = 900;
 constexpr double kMargin = 60.0, kTitleRoom = 100.0;
 constexpr std::size_t kMostLines = 100;               // of the mesh in a direction: what an .svg can carry
 constexpr double kHeightShare = 0.12;                 // of the longer side, which the relief is enlarged to
@@ -94,9 +94,9 @@ Sheet sheet_for(const std::vector<Point3>& points) {
     const Point3 p = seen(point);
     left = std::min(left, p.x), right = std::max(right, p.x), low = std::min(low, p.y), high = std::max(high, p.y);
   }
-  const double wide = kWidth - 2.0 * kMargin, tall = kHeight - kTitleRoom - 2.0 * kMargin;
+  const double wide = kSheetWidth - 2.0 * kMargin, tall = kSheetHeight - kTitleRoom - 2.0 * kMargin;
   const double scale = std::min(wide / (right - left), tall / (high - low));
-  return {scale, 0.5 * kWidth - 0.5 * scale * (left + right),
+  return {scale, 0.5 * kSheetWidth - 0.5 * scale * (left + right),
           kTitleRoom + kMargin + 0.5 * tall + 0.5 * scale * (low + high)};
 }
 
@@ -168,7 +168,7 @@ void write_relief(const HeightMap& map, const std::string& title, const std::fil
   }
   const Sheet sheet = sheet_for(outline);
 
-  plot::Canvas canvas(file, kWidth, kHeight);
+  plot::Canvas canvas(file, kSheetWidth, kSheetHeight);
   canvas.text(kMargin, 44.0, title, {.size = 19.0, .bold = true});
   char text[160];
   std::snprintf(text, sizeof text, "Heights %.3g times enlarged, from %.3g to %.3g µm about the least-squares plane",

@@ -17,7 +17,7 @@ constexpr double kSamePlace = 1e-3;     // of the widest gap
 constexpr std::size_t kMostSparse = 4;  // places of the grid for a row
 
 // m as mm, and back, by moving the decimal exponent: a product with 1000 would lose the last bit.
-constexpr int kMilli = 3;
+constexpr int kDecadesToMm = 3;
 
 std::string mm_text(double metres) {
   char buffer[32];
@@ -27,7 +27,7 @@ std::string mm_text(double metres) {
   int exponent = 0;
   const std::size_t digits_of_exponent = e + (text[e + 1] == '+' ? 2 : 1);
   std::from_chars(text.data() + digits_of_exponent, text.data() + text.size(), exponent);
-  exponent += kMilli;
+  exponent += kDecadesToMm;
   std::string digits;
   for (const char c : text.substr(0, e))
     if (c != '.' && c != '-') digits += c;
@@ -52,7 +52,7 @@ double metres(const CsvTable& table, const CsvRow& row, std::size_t column) {
     std::from_chars(text.data() + digits, text.data() + text.size(), exponent);
     text.erase(e);
   }
-  text.append("e").append(std::to_string(static_cast<long>(exponent) - kMilli));
+  text.append("e").append(std::to_string(static_cast<long>(exponent) - kDecadesToMm));
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size())

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostPoints = 65535;
 constexpr std::string_view kSdfBlanks = " \t\r";
 
-std::string_view without_blanks(std::string_view text) {
+std::string_view bare_text(std::string_view text) {
   const auto first = text.find_first_not_of(kSdfBlanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kSdfBlanks) + 1 - first);
@@ -63,7 +63,7 @@ class SdfReader {
   bool next_line(std::string_view& line) {
     if (text_.empty()) return false;
     const auto end = std::min(text_.find('\n'), text_.size());
-    line = without_blanks(text_.substr(0, end));
+    line = bare_text(text_.substr(0, end));
     text_.remove_prefix(std::min(end + 1, text_.size()));
     ++line_;
     return true;
@@ -91,8 +91,8 @@ class SdfReader {
       if (line.empty() || line.starts_with(';')) continue;
       const auto equals = line.find('=');
       if (equals == std::string_view::npos) fail(line_, "is no NAME = VALUE; a line of * ends the header");
-      const std::string name(without_blanks(line.substr(0, equals)));
-      Entry entry{std::string(without_blanks(line.substr(equals + 1))), line_};
+      const std::string name(bare_text(line.substr(0, equals)));
+      Entry entry{std::string(bare_text(line.substr(equals + 1))), line_};
       if (!entries_.emplace(in_lower_case(name), std::move(entry)).second)
         fail(line_, name + ": stands twice in the header; remove one");
     }
@@ -140,7 +140,7 @@ class SdfReader {
       while (!line.empty() && !ended) {
         const auto end = std::min(line.find_first_of(kSdfBlanks), line.size());
         const std::string_view field = line.substr(0, end);
-        line = without_blanks(line.substr(end));
+        line = bare_text(line.substr(end));
         ended = field == "*";
         if (ended) break;
         if (map.heights.size() == wanted) fail(line_, "has more heights than NumPoints times NumProfiles; mend either");

@@ -31,7 +31,7 @@ TEST(Waviness, PassesOfAWaveInAProfileWhatTheStandardSays) {
 TEST(Waviness, PassesHalfOfAWaveOfTheCutoffAlongAcrossAndAslant) {
   constexpr double kCutoff = 0.2e-3;
   for (const double angle : {0.0, 0.5 * std::numbers::pi, 0.6}) {
-    const HeightMap map = map_of(201, 161, 4e-6, 5e-6, [&](double x, double y) {
+    const HeightMap map = surface_of(201, 161, 4e-6, 5e-6, [&](double x, double y) {
       const double way = (x - 0.4e-3) * std::cos(angle) + (y - 0.4e-3) * std::sin(angle);
       return std::cos(2.0 * std::numbers::pi * way / kCutoff);
     });
@@ -41,7 +41,7 @@ TEST(Waviness, PassesHalfOfAWaveOfTheCutoffAlongAcrossAndAslant) {
 
 TEST(Roughness, KeepsHalfOfAWaveOfTheCutoff) {
   constexpr double kCutoff = 0.4e-3;
-  const HeightMap map = map_of(1000, 1000, 4e-6, 4e-6, [&](double x, double y) {
+  const HeightMap map = surface_of(1000, 1000, 4e-6, 4e-6, [&](double x, double y) {
     return 1e-6 * std::cos(2.0 * std::numbers::pi * (x + 2e-6) / kCutoff) +
            1e-6 * std::cos(2.0 * std::numbers::pi * (y + 2e-6) / kCutoff);
   });
@@ -53,7 +53,7 @@ TEST(Roughness, KeepsHalfOfAWaveOfTheCutoff) {
 
 // Weights that do not sum to 1 at ends and holes would bend what is level.
 TEST(Waviness, OfALevelSurfaceWithHolesIsLevelUpToTheEnds) {
-  HeightMap map = map_of(60, 50, 4e-6, 5e-6, [](double, double) { return 3e-6; });
+  HeightMap map = surface_of(60, 50, 4e-6, 5e-6, [](double, double) { return 3e-6; });
   for (std::size_t k = 0; k < map.heights.size(); k += 11) map.heights[k] = kNaN;
   const HeightMap waves = waviness(map, 0.1e-3);
   for (std::size_t k = 0; k < map.heights.size(); ++k) {

@@ -11,7 +11,8 @@ namespace stillcut {
 
 // heights(x, y) at every point; x along the feed, y across it, m.
 template <class Heights>
-HeightMap map_of(std::size_t along, std::size_t across, double spacing_along, double spacing_across, Heights heights) {
+HeightMap surface_of(std::size_t along, std::size_t across, double spacing_along, double spacing_across,
+                     Heights heights) {
   HeightMap map{along, across, spacing_along, spacing_across, std::vector<double>(along * across)};
   for (std::size_t j = 0; j < across; ++j)
     for (std::size_t i = 0; i < along; ++i)
@@ -28,7 +29,7 @@ inline double scallop(double y, double step, double height) {
 inline HeightMap noise_map(std::size_t along, std::size_t across, double rms, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, rms);
-  return map_of(along, across, 4e-6, 5e-6, [&](double, double) { return normal(random); });
+  return surface_of(along, across, 4e-6, 5e-6, [&](double, double) { return normal(random); });
 }
 
 }  // namespace stillcut

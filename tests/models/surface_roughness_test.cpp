@@ -39,7 +39,7 @@ TEST(ProfileRoughness, OfAWave) {
 // Heights h u², u from -1 to 1: mean h/3, from which all follows. The sign of R_sk tells cusps from grooves.
 TEST(ProfileRoughness, OfScallops) {
   constexpr double kHeight = 3e-6, kStep = 0.4e-3;
-  const HeightMap map = map_of(5, 4000, 1e-5, 1e-6, [&](double, double y) { return scallop(y, kStep, kHeight); });
+  const HeightMap map = surface_of(5, 4000, 1e-5, 1e-6, [&](double, double y) { return scallop(y, kStep, kHeight); });
   const MeanRoughness across = mean_roughness(map, ProfileDirection::across);
   EXPECT_EQ(across.profiles, 5U);
   EXPECT_NEAR(across.mean.ra / kHeight, 4.0 / (9.0 * std::sqrt(3.0)), 1e-3);

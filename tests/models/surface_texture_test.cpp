@@ -19,7 +19,7 @@ TEST(TextureInterval, IsFoundBetweenTheResolvedFrequencies) {
   constexpr double kLength = 2e-3;
   for (const double repeats : {2.5, 3.3, 7.37, 20.62}) {
     const double interval = kLength / repeats;
-    const HeightMap map = map_of(200, 500, 10e-6, 4e-6, [&](double x, double y) {
+    const HeightMap map = surface_of(200, 500, 10e-6, 4e-6, [&](double x, double y) {
       return scallop(y, interval, 5e-6) + 1e-6 * std::cos(2.0 * std::numbers::pi * x / 0.3e-3);
     });
     const TextureInterval across = texture_interval(texture_spectrum(map, ProfileDirection::across));
@@ -47,13 +47,13 @@ TEST(TextureInterval, OutlastsNoiseAndHolesAndATilt) {
 
 TEST(TextureInterval, OfNoiseHasAlmostNoShareAndOfAFlatSurfaceIsNone) {
   EXPECT_LT(texture_interval(texture_spectrum(noise_map(400, 300, 1e-6, 2), ProfileDirection::along)).share, 0.05);
-  const HeightMap flat = map_of(50, 50, 1e-5, 1e-5, [](double, double) { return 0.0; });
+  const HeightMap flat = surface_of(50, 50, 1e-5, 1e-5, [](double, double) { return 0.0; });
   EXPECT_TRUE(std::isnan(texture_interval(texture_spectrum(flat, ProfileDirection::along)).interval));
 }
 
 // A bow is form, not texture, though it is a hundred times higher.
 TEST(TextureInterval, IsNotThatOfABow) {
-  const HeightMap bow = map_of(200, 20, 1e-5, 1e-5, [](double x, double) {
+  const HeightMap bow = surface_of(200, 20, 1e-5, 1e-5, [](double x, double) {
     return 3.0 * x * x + 1e-7 * std::sin(2.0 * std::numbers::pi * x / 0.17e-3);
   });
   const TextureInterval found = texture_interval(texture_spectrum(bow, ProfileDirection::along));
@@ -63,7 +63,7 @@ TEST(TextureInterval, IsNotThatOfABow) {
 
 // Parseval: fails with a wrong window correction, padding or side.
 TEST(TextureSpectrum, SumsToTheMeanSquare) {
-  for (const HeightMap& map : {noise_map(300, 400, 1e-6, 3), map_of(300, 400, 4e-6, 5e-6, [](double x, double y) {
+  for (const HeightMap& map : {noise_map(300, 400, 1e-6, 3), surface_of(300, 400, 4e-6, 5e-6, [](double x, double y) {
                                  return 1e-6 * std::cos(2.0 * std::numbers::pi * (x / 0.1e-3 + y / 0.13e-3));
                                })}) {
     for (const ProfileDirection direction : {ProfileDirection::along, ProfileDirection::across}) {

@@ -23,7 +23,7 @@ namespace {
 
 // Steps across the feed 0.5 mm apart, feed marks 0.2 mm apart, tilted; 2 mm along, 1 mm across.
 HeightMap milled_map() {
-  return map_of(200, 125, 10e-6, 8e-6, [](double x, double y) {
+  return surface_of(200, 125, 10e-6, 8e-6, [](double x, double y) {
     return scallop(y, 0.25e-3, 6e-6) + 1e-6 * std::cos(2.0 * std::numbers::pi * x / 0.2e-3) + 2e-3 * x - 1e-3 * y;
   });
 }
@@ -70,7 +70,7 @@ TEST(HeightMapFigure, OfManyPointsIsThinned) {
 // Fails where the panel fills the figure whatever its shape, and where a hole is coloured as the lowest place.
 TEST(HeightMapFigure, IsDrawnToScaleWithWhiteHoles) {
   const TempFolder folder;
-  HeightMap map = map_of(100, 50, 10e-6, 10e-6, [](double x, double y) { return 1e-6 * std::sin(1e4 * (x + y)); });
+  HeightMap map = surface_of(100, 50, 10e-6, 10e-6, [](double x, double y) { return 1e-6 * std::sin(1e4 * (x + y)); });
   for (std::size_t j = 20; j < 30; ++j)
     for (std::size_t i = 40; i < 60; ++i) map.at(i, j) = kNaN;
   plot::Figure figure = height_map_figure(map, "");
@@ -109,7 +109,7 @@ TEST(SurfaceSpectrumFigure, MarksWhatRepeats) {
   const plot::Line& line = figure.panels[0].lines.at(0);
   EXPECT_NEAR(line.x[static_cast<std::size_t>(std::max_element(line.y.begin(), line.y.end()) - line.y.begin())], 5.0,
               0.1);
-  EXPECT_TRUE(surface_spectrum_figure(map_of(20, 20, 1e-5, 1e-5, [](double, double) { return 0.0; }), "")
+  EXPECT_TRUE(surface_spectrum_figure(surface_of(20, 20, 1e-5, 1e-5, [](double, double) { return 0.0; }), "")
                   .panels[0]
                   .events.empty());
 }
@@ -143,7 +143,7 @@ TEST(Relief, ShowsTheSurfaceAndItsHole) {
 
 TEST(Relief, OfAFlatSurfaceAndOfAFewPointsIsAPicture) {
   const TempFolder folder;
-  write_relief(map_of(30, 20, 1e-5, 1e-5, [](double, double) { return 2e-6; }), "", folder.path() / "flat.png");
+  write_relief(surface_of(30, 20, 1e-5, 1e-5, [](double, double) { return 2e-6; }), "", folder.path() / "flat.png");
   write_relief(noise_map(3, 2, 1e-6, 1), "", folder.path() / "few.png");
   plot::write_figure(height_map_figure(noise_map(3, 2, 1e-6, 1), ""), folder.path() / "map.png");
   EXPECT_GT(std::filesystem::file_size(folder.path() / "flat.png"), 1000U);
@@ -153,7 +153,7 @@ TEST(Relief, OfAFlatSurfaceAndOfAFewPointsIsAPicture) {
 TEST(SurfacePictures, AreRefusedWhereNothingIsKnownOrWritten) {
   EXPECT_THROW(write_relief(milled_map(), "", "/no/such/folder/a.png"), InputError);
   EXPECT_THROW(write_relief(milled_map(), "", "a.pdf"), InputError);
-  const HeightMap unknown = map_of(30, 20, 1e-5, 1e-5, [](double, double) { return kNaN; });
+  const HeightMap unknown = surface_of(30, 20, 1e-5, 1e-5, [](double, double) { return kNaN; });
   EXPECT_THROW((void)height_map_figure(unknown, ""), std::invalid_argument);
   EXPECT_THROW((void)surface_profiles_figure(unknown, ""), std::invalid_argument);
   EXPECT_THROW((void)surface_spectrum_figure(unknown, ""), std::invalid_argument);

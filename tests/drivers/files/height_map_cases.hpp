@@ -33,7 +33,7 @@ inline bool same_map(const HeightMap& a, const HeightMap& b) {
 }
 
 // Cut off, or some characters changed, left out, doubled.
-inline std::string spoilt(std::string text, std::mt19937_64& random) {
+inline std::string spoilt_text(std::string text, std::mt19937_64& random) {
   const auto below = [&](std::size_t end) { return std::uniform_int_distribution<std::size_t>(0, end - 1)(random); };
   static constexpr std::string_view kCharacters = "0123456789.,-+eE* =\r\n\"#;naNBADinfx\0\xFF\x80";
   if (below(3) == 0) text.resize(below(text.size()));

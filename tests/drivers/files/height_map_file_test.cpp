@@ -83,7 +83,7 @@ TEST(HeightMapCsv, SpoiltIsReadOrRefused) {
   std::mt19937_64 random(2);
   int read = 0, refused = 0;
   for (int n = 0; n < 3000; ++n) {
-    const std::string text = spoilt(csv_of(random_height_map(random)), random);
+    const std::string text = spoilt_text(csv_of(random_height_map(random)), random);
     try {
       const HeightMap map = parse_height_map_csv(text, "map.csv");
       ASSERT_EQ(map.heights.size(), map.along * map.across);

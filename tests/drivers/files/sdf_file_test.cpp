@@ -106,7 +106,7 @@ TEST(SdfFile, SpoiltIsReadOrRefused) {
   std::mt19937_64 random(2);
   int read = 0, refused = 0;
   for (int n = 0; n < 3000; ++n) {
-    const std::string text = spoilt(sdf_of(random_height_map(random)), random);
+    const std::string text = spoilt_text(sdf_of(random_height_map(random)), random);
     try {
       const HeightMap map = parse_sdf(text, "map.sdf");
       ASSERT_EQ(map.heights.size(), map.along * map.across);
