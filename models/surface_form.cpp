@@ -41,7 +41,7 @@ Eigen::Matrix<double, N, 1> fitted_form(std::span<const double> heights, Basis b
 
 template <int N, class Basis>
 Eigen::Matrix<double, N, 1> take_off(std::span<double> heights, Basis basis_at) {
-  const Eigen::Matrix<double, N, 1> form = fitted_form<N>(heights, basis_at);
+  Eigen::Matrix<double, N, 1> form = fitted_form<N>(heights, basis_at);
   for (std::size_t k = 0; k < heights.size(); ++k) heights[k] -= form.dot(basis_at(k));
   return form;
 }

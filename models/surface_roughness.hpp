@@ -33,8 +33,8 @@ struct ProfileRoughness {
   std::size_t unknown = 0;      // points that are NaN
 };
 
-// Throws std::invalid_argument where half of the points or fewer than three are known (four for a quadratic form), for
-// a spacing that is not positive, and for a cutoff that `waviness` refuses.
+// Throws std::invalid_argument where less than half of the points or fewer than three (four for a quadratic form) are
+// known, for a spacing that is not positive, and for a cutoff that `waviness` refuses.
 [[nodiscard]] ProfileRoughness profile_roughness(std::span<const double> heights, double spacing,
                                                  const RoughnessSettings& settings = {});
 
