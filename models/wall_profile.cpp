@@ -1,8 +1,10 @@
 #include "models/wall_profile.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "models/surface_form.hpp"
+#include "models/surface_roughness.hpp"
 
 namespace stillcut {
 
@@ -23,28 +25,14 @@ std::vector<double> wall_profile(const PartSlice& slice, const WallLine& line) {
 Roughness roughness(std::span<const double> heights, double spacing) {
   if (heights.size() < 3 || !(spacing > 0.0))
     throw std::invalid_argument("roughness needs a spacing and at least three points");
-  const auto count = static_cast<double>(heights.size());
-  const double middle = 0.5 * (count - 1.0);
-  double mean = 0.0, moment = 0.0, spread = 0.0;
-  for (const double height : heights) mean += height / count;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double x = static_cast<double>(i) - middle;
-    moment += x * (heights[i] - mean);
-    spread += x * x;
-  }
-  const double rise = moment / spread;
-  Roughness result{.mean = mean, .slope = rise / spacing};
-  double lowest = 0.0, highest = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double height = heights[i] - mean - rise * (static_cast<double>(i) - middle);
-    result.ra += std::abs(height) / count;
-    squares += height * height;
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
-  }
-  result.rq = std::sqrt(squares / count);
-  result.rt = highest - lowest;
-  return result;
+  std::vector<double> profile(heights.begin(), heights.end());
+  const ProfileForm line = remove_form(profile, SurfaceForm::linear);
+  const HeightStatistics statistics = height_statistics(profile);
+  return {.ra = statistics.mean_distance,
+          .rq = statistics.rms,
+          .rt = statistics.highest - statistics.lowest,
+          .mean = line.middle,
+          .slope = line.rise / spacing};
 }
 
 }  // namespace stillcut

@@ -27,6 +27,13 @@ struct View {
   }
 };
 
+// Shrinks the box so that a step along x and along y is as long.
+void draw_to_scale(View& view) {
+  const double scale = std::min(view.box.width() / view.x.span(), view.box.height() / view.y.span());
+  view.box.right = view.box.left + scale * view.x.span();
+  view.box.bottom = view.box.top + scale * view.y.span();
+}
+
 struct Tick {
   double value;
   std::string text;
@@ -60,7 +67,9 @@ std::vector<Tick> name_ticks(const View& view) {
 }
 
 std::vector<Tick> x_ticks(const View& view) {
-  return view.names->empty() ? ticks_of(view.x, 12, false) : name_ticks(view);
+  constexpr double kRoom = 60.0;  // px, of a number
+  const int count = std::clamp(static_cast<int>(view.box.width() / kRoom), 3, 12);
+  return view.names->empty() ? ticks_of(view.x, count, false) : name_ticks(view);
 }
 std::vector<Tick> y_ticks(const View& view) {
   return ticks_of(view.y, std::max(3, static_cast<int>(view.box.height() / 34)), view.logarithmic);
@@ -240,11 +249,12 @@ void write_figure(const Figure& figure, const std::filesystem::path& file) {
     top += room_above(panel);
     const double bottom = top + room * panel.height / shares;
     const Axis& x = x_axis(figure, panel);
-    const View view{{kLeft, top, right, bottom},
-                    panel.x ? x_range(figure, &panel) : shared,
-                    y_range(panel),
-                    panel.y.logarithmic,
-                    &x.names};
+    View view{{kLeft, top, right, bottom},
+              panel.x ? x_range(figure, &panel) : shared,
+              y_range(panel),
+              panel.y.logarithmic,
+              &x.names};
+    if (panel.same_scale) draw_to_scale(view);
     draw_data(canvas, view, panel);
     draw_axes(canvas, view, panel, x, shows_axis(p));
     if (panel.image) draw_color_scale(canvas, view, *panel.image);

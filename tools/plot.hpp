@@ -74,7 +74,8 @@ struct Note {  // text in the panel at a point of the data
   Color color = kInk;
 };
 
-// Values on a grid in colours from dark (low) to bright (high). Drawn under everything else of the panel.
+// Values on a grid in colours from dark (low) to bright (high), white where NaN. Drawn under everything else of the
+// panel.
 struct Image {
   double x_begin = 0.0, x_end = 0.0, y_begin = 0.0, y_end = 0.0;
   int columns = 0, rows = 0;
@@ -95,6 +96,7 @@ struct Panel {
   Axis y;
   std::optional<Axis> x{};  // its own, where it shows something else than the figure's other panels
   double height = 1.0;      // share of the figure's height, relative to the other panels
+  bool same_scale = false;  // x and y are of one kind and drawn to one scale: the panel shrinks to it
   std::optional<Image> image;
   std::vector<Band> bands;
   std::vector<Area> areas;

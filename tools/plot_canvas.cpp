@@ -127,6 +127,16 @@ void Canvas::area(const std::vector<double>& x, const std::vector<double>& low, 
   cairo_fill(cairo_.get());
 }
 
+void Canvas::polygon(const std::vector<double>& x, const std::vector<double>& y, Color color) {
+  set_color(color, 1.0);
+  cairo_new_path(cairo_.get());
+  for (std::size_t i = 0; i < x.size(); ++i) cairo_line_to(cairo_.get(), x[i], y[i]);
+  cairo_close_path(cairo_.get());
+  cairo_fill_preserve(cairo_.get());
+  cairo_set_line_width(cairo_.get(), 0.6);  // over the seam that smoothing leaves between neighbours
+  cairo_stroke(cairo_.get());
+}
+
 void Canvas::image(Box box, const Image& image) {
   const std::unique_ptr<cairo_surface_t, Close> raster(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.columns, image.rows));
@@ -139,7 +149,9 @@ void Canvas::image(Box box, const Image& image) {
     const float* values =
         &image.values[static_cast<std::size_t>(image.rows - 1 - row) * static_cast<std::size_t>(image.columns)];
     for (int column = 0; column < image.columns; ++column) {
-      const Color color = scale_color((values[column] - image.low) / (image.high - image.low));
+      const Color color = std::isnan(values[column])
+                              ? Color{1, 1, 1}
+                              : scale_color((values[column] - image.low) / (image.high - image.low));
       pixels[column] = byte(color.red) << 16 | byte(color.green) << 8 | byte(color.blue);
     }
   }

@@ -36,6 +36,8 @@ class Canvas {
   void disc(double x, double y, double diameter, Color color);
   void marker(double x, double y, double size, Color color, Marker marker);
   void image(Box box, const Image& image);
+  // Filled; polygons side by side meet without a seam.
+  void polygon(const std::vector<double>& x, const std::vector<double>& y, Color color);
 
   // A line through points that may be NaN: there the pen lifts.
   void polyline(const std::vector<double>& x, const std::vector<double>& y, const Line& style);
