@@ -21,7 +21,7 @@ struct RefinementSetup {
   double tolerance = 0.01;           // of the roughness, relative
   std::size_t most_points = 25'000'000;
   std::function<double(const HeightMap&)> figure = arithmetic_deviation;
-  Workers workers;  // empty: the calling thread alone
+  Workers workers{};  // empty: the calling thread alone
 };
 
 struct RefinedSurface {
