@@ -25,7 +25,7 @@ namespace stillcut {
 [[nodiscard]] HeightMap uncut_map(double along, double across, double spacing);
 
 // A map cut into tiles of at most `points` x `points`.
-[[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 512);
+[[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 256);
 
 // The passes that leave the surface over x = 0 to `along`, y = 0 to `across`, as a machine makes them one after the
 // other, with room for the tool to run in and out; one of them lies on y = 0.

@@ -37,13 +37,13 @@ SweptCut random_cut(std::mt19937& random) {
   c.along = 0.15e-3;
   c.across = 0.12e-3;
   if (random() % 2 == 0) {
-    const double frequency = between(50, 800), amplitude = between(0, 4e-6);
+    const double frequency = between(50, 300), amplitude = between(0, 4e-6);
     std::vector<Eigen::Vector3d> samples;
-    for (int i = 0; i < 4000; ++i) {
-      const double turn = kTwoPi * frequency * 1e-4 * i;
+    for (int i = 0; i < 20000; ++i) {
+      const double turn = kTwoPi * frequency * 2e-5 * i;
       samples.emplace_back(amplitude * std::sin(turn), amplitude * std::cos(turn), 0.5 * amplitude * std::sin(turn));
     }
-    c.displacement = sampled_displacement(0.0, 1e-4, std::move(samples));
+    c.displacement = sampled_displacement(0.0, 2e-5, std::move(samples));
   }
   return c;
 }
@@ -66,10 +66,11 @@ TEST(SurfaceProperties, NoEdgeIsEverBelowTheSurface) {
       const double time = part(random) * pass.length / motion.feed_rate;
       const EdgePoint point = c.tool.shape == ToolShape::ball
                                   ? ball_edge_point(c.tool, std::abs(lean + 0.2 * (part(random) - 0.5)))
-                                  : bottom_edge_point(c.tool, radius * (1.0 - 0.1 * part(random)));
+                                  : bottom_edge_point(c.tool, radius - 2.0 * c.spacing - 0.1 * radius * part(random));
       // A tooth's sheet ends with its edge, and folds where the edge stands still for a moment, in steps that the grid
       // cannot show.
-      if (point.radius < 3.0 * c.spacing + 2.0 * motion.feed_rate / motion.spindle_speed) continue;
+      if (point.radius < 3.0 * c.spacing + 2.0 * (motion.feed_rate + c.displacement.speed) / motion.spindle_speed)
+        continue;
       const Eigen::Vector3d at = edge_position(motion, pass, random() % motion.tooth_angle.size(), point, time);
       const double x = at.x() / map.spacing_along, y = at.y() / map.spacing_across;
       if (x < 0 || y < 0 || x >= static_cast<double>(map.along - 1) || y >= static_cast<double>(map.across - 1))
