@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBall = 0.5 * std::numbers::pi;  // kappa where the ball ends and the shank begins
 
-std::string text(const char* format, double a, double b) {
+std::string filled_in(const char* format, double a, double b) {
   char buffer[200];
   (void)std::snprintf(buffer, sizeof buffer, format, a, b);
   return buffer;
@@ -53,16 +53,16 @@ double corner_ridge(const CutterMotion& motion, double step_over) {
 void check_contact(const CutterMotion& motion, const SweptHeights& swept) {
   if (!(motion.orientation(2, 2) > 0.0))
     throw std::invalid_argument(
-        text("tilt and lead: turn the tool by %.1f degrees from the normal; it touches only "
-             "below %.0f",
-             rad_to_deg(motion.inclination()), 90.0));
+        filled_in("tilt and lead: turn the tool by %.1f degrees from the normal; it touches only "
+                  "below %.0f",
+                  rad_to_deg(motion.inclination()), 90.0));
   if (motion.tool.shape != ToolShape::ball) return;
   const double room = kBall - std::asin(std::min(1.0, swept.reach / (0.5 * motion.tool.diameter)));
   if (motion.inclination() > room)
     throw std::invalid_argument(
-        text("tilt and lead: turn the contact by %.1f degrees from the tip onto the shank; the "
-             "ball cuts the surface alone up to %.1f",
-             rad_to_deg(motion.inclination()), rad_to_deg(room)));
+        filled_in("tilt and lead: turn the contact by %.1f degrees from the tip onto the shank; the "
+                  "ball cuts the surface alone up to %.1f",
+                  rad_to_deg(motion.inclination()), rad_to_deg(room)));
 }
 
 }  // namespace
@@ -72,17 +72,17 @@ double scallop_height(const CutterMotion& motion, double step_over) {
   const double widest = ball ? motion.tool.diameter : 2.0 * corner_half_width(motion);
   if (!(step_over > 0.0 && step_over < widest))
     throw std::invalid_argument(
-        text("step-over: %.4g mm must be positive and less than the %.4g mm that the tool is "
-             "wide",
-             1e3 * step_over, 1e3 * widest));
+        filled_in("step-over: %.4g mm must be positive and less than the %.4g mm that the tool is "
+                  "wide",
+                  1e3 * step_over, 1e3 * widest));
   return ball ? arc_height(0.5 * motion.tool.diameter, 0.5 * step_over) : corner_ridge(motion, step_over);
 }
 
 SweptHeights swept_heights(const CutterMotion& motion, const Cut& cut) {
   const double step_over = step_over_of(cut), ridge = scallop_height(motion, step_over);
   if (ridge > cut.axial_depth)
-    throw std::invalid_argument(text("step-over: leaves ridges of %.4g mm, higher than the axial depth of %.4g mm",
-                                     1e3 * ridge, 1e3 * cut.axial_depth));
+    throw std::invalid_argument(filled_in("step-over: leaves ridges of %.4g mm, higher than the axial depth of %.4g mm",
+                                          1e3 * ridge, 1e3 * cut.axial_depth));
   SweptHeights swept;
   // Runout turns with the spindle, so it lies in the plane of the bottom; axial runout along the tool's axis.
   const Eigen::Matrix3d& o = motion.orientation;

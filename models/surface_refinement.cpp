@@ -16,7 +16,7 @@ Eigen::Vector3d plane_terms(const HeightMap& map, std::size_t i, std::size_t j) 
 }
 
 template <typename Point>
-void for_each_cut(const HeightMap& map, Point point) {
+void for_each_height(const HeightMap& map, Point point) {
   for (std::size_t j = 0; j < map.across; ++j)
     for (std::size_t i = 0; i < map.along; ++i)
       if (!std::isnan(map.at(i, j))) point(plane_terms(map, i, j), map.at(i, j));
@@ -27,7 +27,7 @@ void for_each_cut(const HeightMap& map, Point point) {
 double arithmetic_deviation(const HeightMap& map) {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d moments = Eigen::Vector3d::Zero();
-  for_each_cut(map, [&](const Eigen::Vector3d& terms, double height) {
+  for_each_height(map, [&](const Eigen::Vector3d& terms, double height) {
     squares += terms * terms.transpose();
     moments += terms * height;
   });
@@ -35,7 +35,8 @@ double arithmetic_deviation(const HeightMap& map) {
   if (points < 3.0) return std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d plane = squares.inverse() * moments;
   double sum = 0.0;
-  for_each_cut(map, [&](const Eigen::Vector3d& terms, double height) { sum += std::abs(height - plane.dot(terms)); });
+  for_each_height(map,
+                  [&](const Eigen::Vector3d& terms, double height) { sum += std::abs(height - plane.dot(terms)); });
   return sum / points;
 }
 

@@ -12,8 +12,8 @@
 namespace stillcut {
 namespace {
 
-constexpr double kPaperShare = 0.2;  // section 2.4: max(dx, dy) <= 1/5 min(f_z, step-over)
-constexpr double kMostSteps = 1e7;   // a turn: finer than any grid that fits into memory
+constexpr double kPaperShare = 0.2;      // section 2.4: max(dx, dy) <= 1/5 min(f_z, step-over)
+constexpr double kMostStepsATurn = 1e7;  // a turn: finer than any grid that fits into memory
 // Turns are cut in this order: every 16th, what is left of every 4th, the rest. The surface is then nearly finished
 // early and most of the later patches are seen to lie above it. The order changes nothing else: a minimum is one.
 constexpr std::array<std::int64_t, 3> kStrides{16, 4, 1};
@@ -129,7 +129,7 @@ void SurfaceSweep::place_edge_points(double spacing) {
       kTwoPi * (radius + motion_.tool.runout +
                 (motion_.feed_rate + motion_.displacement.speed) / motion_.spindle_speed);  // m a turn
   const double steps = std::ceil(travel / spacing);
-  if (!(steps < kMostSteps)) throw std::invalid_argument("grid: too fine for this tool");
+  if (!(steps < kMostStepsATurn)) throw std::invalid_argument("grid: too fine for this tool");
   steps_per_turn_ = std::max<std::int64_t>(8, static_cast<std::int64_t>(steps));
 }
 
@@ -170,10 +170,10 @@ void SurfaceSweep::find_windows() {
   const auto empty = [&](std::int64_t k) { return ranges_[at(k)].begin == ranges_[at(k)].end; };
   std::int64_t gap = 0;
   while (gap < turn && !empty(gap)) ++gap;
-  if (gap == turn) windows_.push_back({0, turn, 0, 0, 0, 0});  // the edge is low all around
+  if (gap == turn) windows_.push_back({.first = 0, .last = turn});  // the edge is low all around
   for (std::int64_t k = gap; gap < turn && k < gap + turn; ++k) {
     if (empty(k)) continue;
-    Window window{k, k, 0, 0, 0, 0};
+    Window window{.first = k, .last = k};
     while (!empty(window.last + 1)) ++window.last;
     windows_.push_back(window);
     k = window.last;

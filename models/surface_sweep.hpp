@@ -47,7 +47,7 @@ class SurfaceSweep {
   // from the tool's position.
   struct Window {
     std::int64_t first = 0, last = 0;
-    double low_x, high_x, low_y, high_y;
+    double low_x = 0.0, high_x = 0.0, low_y = 0.0, high_y = 0.0;
   };
   struct Range {
     int begin = 0, end = 0;  // edge points
