@@ -1,0 +1,118 @@
+#include "models/swept_patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillcut {
+namespace {
+
+constexpr std::size_t kBlock = 8;  // points a side
+// In points of the map. Neighbouring patches may both claim a point on the line between them, none may miss it.
+constexpr double kSlack = 1e-9;
+
+}  // namespace
+
+PatchCanvas::PatchCanvas(HeightMap& map, const MapTile& tile)
+    : map_{map},
+      tile_{tile},
+      blocks_along_{(tile.along_end - tile.along_begin + kBlock - 1) / kBlock},
+      blocks_across_{(tile.across_end - tile.across_begin + kBlock - 1) / kBlock},
+      block_highest_(blocks_along_ * blocks_across_),
+      touched_(block_highest_.size(), 1) {
+  settle();
+}
+
+void PatchCanvas::settle() {
+  for (std::size_t block = 0; block < touched_.size(); ++block) {
+    if (!touched_[block]) continue;
+    touched_[block] = 0;
+    const std::size_t from_x = tile_.along_begin + block % blocks_along_ * kBlock,
+                      from_y = tile_.across_begin + block / blocks_along_ * kBlock;
+    const std::size_t to_x = std::min(from_x + kBlock, tile_.along_end),
+                      to_y = std::min(from_y + kBlock, tile_.across_end);
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t j = from_y; j < to_y; ++j)
+      for (std::size_t i = from_x; i < to_x; ++i) {
+        const double height = map_.at(i, j);  // NaN: not cut yet
+        highest = height <= highest ? highest : std::isnan(height) ? std::numeric_limits<double>::infinity() : height;
+      }
+    block_highest_[block] = highest;
+  }
+}
+
+bool PatchCanvas::hidden(const Box& box, double lowest) const {
+  const std::size_t low_x = (box.low_x - tile_.along_begin) / kBlock,
+                    high_x = (box.high_x - tile_.along_begin) / kBlock;
+  const std::size_t high_y = (box.high_y - tile_.across_begin) / kBlock;
+  for (std::size_t y = (box.low_y - tile_.across_begin) / kBlock; y <= high_y; ++y)
+    for (std::size_t x = low_x; x <= high_x; ++x)
+      if (lowest < block_highest_[y * blocks_along_ + x]) return false;
+  return true;
+}
+
+void PatchCanvas::touch(const Box& box) {
+  const std::size_t low_x = (box.low_x - tile_.along_begin) / kBlock,
+                    high_x = (box.high_x - tile_.along_begin) / kBlock;
+  const std::size_t high_y = (box.high_y - tile_.across_begin) / kBlock;
+  for (std::size_t y = (box.low_y - tile_.across_begin) / kBlock; y <= high_y; ++y)
+    for (std::size_t x = low_x; x <= high_x; ++x) touched_[y * blocks_along_ + x] = 1;
+}
+
+void PatchCanvas::lower(const Corner& a, const Corner& b, const Corner& c, const Box& box) {
+  const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+  const double twice_area = bx * cy - cx * by;
+  if (twice_area == 0.0) return;  // seen edge-on: its neighbours have its points
+  const double sign = twice_area > 0.0 ? 1.0 : -1.0, area = std::abs(twice_area);
+  const double lowest = std::min({a.z, b.z, c.z});
+  for (std::size_t j = box.low_y; j <= box.high_y; ++j) {
+    const double y = static_cast<double>(j) - a.y;
+    double* row = &map_.heights[j * map_.along];
+    for (std::size_t i = box.low_x; i <= box.high_x; ++i) {
+      const double x = static_cast<double>(i) - a.x;
+      const double to_b = sign * (x * cy - cx * y), to_c = sign * (bx * y - x * by);
+      if (to_b < -kSlack || to_c < -kSlack || to_b + to_c > area + kSlack) continue;
+      // A sliver's slack may reach beyond its corners.
+      const double height = std::max(lowest, a.z + (to_b * (b.z - a.z) + to_c * (c.z - a.z)) / area);
+      ++count_.heights;
+      if (!(row[i] <= height)) row[i] = height;
+    }
+  }
+}
+
+void PatchCanvas::sweep(const EdgeRow& before, const EdgeRow& after, double highest) {
+  const int begin = std::max(before.begin, after.begin), end = std::min(before.end, after.end);
+  const auto first_x = static_cast<double>(tile_.along_begin), last_x = static_cast<double>(tile_.along_end - 1);
+  const auto first_y = static_cast<double>(tile_.across_begin), last_y = static_cast<double>(tile_.across_end - 1);
+  for (int i = begin; i + 1 < end; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double lowest = std::min(std::min(before.z[n], before.z[n + 1]), std::min(after.z[n], after.z[n + 1]));
+    const double low_x =
+        std::min(std::min(before.x[n], before.x[n + 1]), std::min(after.x[n], after.x[n + 1])) - kSlack;
+    const double high_x =
+        std::max(std::max(before.x[n], before.x[n + 1]), std::max(after.x[n], after.x[n + 1])) + kSlack;
+    const double low_y =
+        std::min(std::min(before.y[n], before.y[n + 1]), std::min(after.y[n], after.y[n + 1])) - kSlack;
+    const double high_y =
+        std::max(std::max(before.y[n], before.y[n + 1]), std::max(after.y[n], after.y[n + 1])) + kSlack;
+    if (lowest > highest || !(high_x >= first_x && low_x <= last_x && high_y >= first_y && low_y <= last_y)) continue;
+    ++count_.patches;
+    const auto up = [](double from, double v) {
+      v = std::max(from, v);
+      const auto whole = static_cast<std::int64_t>(v);
+      return static_cast<std::size_t>(whole + (static_cast<double>(whole) < v));
+    };
+    const auto down = [](double to, double v) {
+      return static_cast<std::size_t>(static_cast<std::int64_t>(std::min(to, v)));
+    };
+    const Box box{up(first_x, low_x), down(last_x, high_x), up(first_y, low_y), down(last_y, high_y)};
+    if (box.low_x > box.high_x || box.low_y > box.high_y || hidden(box, lowest)) continue;
+    const Corner a{before.x[n], before.y[n], before.z[n]}, b{before.x[n + 1], before.y[n + 1], before.z[n + 1]};
+    const Corner c{after.x[n + 1], after.y[n + 1], after.z[n + 1]}, d{after.x[n], after.y[n], after.z[n]};
+    lower(a, b, c, box);
+    lower(a, c, d, box);
+    touch(box);
+  }
+}
+
+}  // namespace stillcut
