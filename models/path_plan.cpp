@@ -52,14 +52,15 @@ class Area {
 
   // What holds at all of them along a direction.
   [[nodiscard]] std::vector<double> common(const std::vector<std::size_t>& members, int direction) const {
-    std::vector<const DirectionCurve*> curves;
-    for (const std::size_t i : members) curves.push_back(&curve(i, direction));
+    std::vector<const DirectionCurve*> curves(members.size());
+    std::transform(members.begin(), members.end(), curves.begin(), [&](std::size_t i) { return &curve(i, direction); });
     return common_limits(curves, table_.max_depth);
   }
 
  private:
   [[nodiscard]] std::vector<Eigen::Vector2d> places() const {
     std::vector<Eigen::Vector2d> places;
+    places.reserve(used_.size());
     for (const std::size_t location : used_) places.push_back(table_.locations[location].place);
     return places;
   }
