@@ -90,8 +90,8 @@ PatchCosts costs_over(const Area& area, double turning_cost) {
   return costs;
 }
 
-// The share of the absolute stability index that a direction gives away at each location.
-PatchPlan plan_for_absolute(const Area& area, double turning_cost) {
+// The share of the absolute stability index that a direction gives away at each location: [location][direction].
+std::vector<std::vector<double>> lost_shares(const Area& area) {
   const DirectionTable& table = area.table();
   std::vector<std::vector<double>> lost(area.count(), std::vector<double>(table.directions.size(), 0.0));
   for (std::size_t i = 0; i < area.count(); ++i) {
@@ -101,12 +101,24 @@ PatchPlan plan_for_absolute(const Area& area, double turning_cost) {
       if (!std::isnan(ratio)) lost[i][d] = (1.0 - ratio) / static_cast<double>(area.count());
     }
   }
+  return lost;
+}
+
+double lost_in(const std::vector<std::vector<double>>& lost, const std::vector<std::size_t>& members, int direction) {
+  double sum = 0.0;
+  for (const std::size_t i : members) sum += lost[i][static_cast<std::size_t>(direction)];
+  return sum;
+}
+
+PatchPlan plan_for_absolute(const Area& area, double turning_cost, double& single_cost) {
+  const std::vector<std::vector<double>> lost = lost_shares(area);
+  const std::vector<std::size_t> all = area.in(area.whole());
   PatchCosts costs = costs_over(area, turning_cost);
   costs.patch = [&](const GridRectangle& rectangle, int direction) {
-    double sum = 0.0;
-    for (const std::size_t i : area.in(rectangle)) sum += lost[i][static_cast<std::size_t>(direction)];
-    return sum;
+    return lost_in(lost, area.in(rectangle), direction);
   };
+  single_cost = kInfinity;
+  for (int d = 0; d < costs.directions; ++d) single_cost = std::min(single_cost, lost_in(lost, all, d));
   return plan_patches(costs);
 }
 
@@ -129,11 +141,10 @@ double cutting_time(std::size_t members, std::size_t all, double speed, double d
 }
 
 struct SingleDirection {
-  int direction = 0;
-  double depth = 0.0, speed = 0.0, time = kInfinity;
+  double depth = 0.0, time = kInfinity;
 };
 
-// The single direction, depth and speed that take the least time; time stays infinite where no depth is stable.
+// What one direction and speed for all take at least, and the depth of it; infinite where no depth is stable.
 SingleDirection fastest_single(const Area& area) {
   std::vector<std::size_t> all = area.in(area.whole());
   SingleDirection best;
@@ -143,7 +154,7 @@ SingleDirection fastest_single(const Area& area) {
       const double speed = area.table().speeds[s];
       if (!(common[s] > 0.0)) continue;
       const double time = cutting_time(1, 1, speed, common[s]);
-      if (time < best.time) best = {static_cast<int>(d), common[s], speed, time};
+      if (time < best.time) best = {common[s], time};
     }
   }
   return best;
@@ -237,19 +248,8 @@ PathPlan plan_path(const DirectionTable& table, std::span<const std::size_t> use
     plan = std::move(timed.plan);
     depth = timed.depth;
     result.single_cost = std::isfinite(single.time) ? 1.0 : kInfinity;
-    result.single_direction = table.directions[static_cast<std::size_t>(single.direction)];
   } else {
-    plan = plan_for_absolute(area, settings.turning_cost);
-    result.single_cost = kInfinity;
-    for (const double direction : table.directions) {
-      double lost = 0.0;
-      for (const std::size_t i : used) {
-        const LocationLimits& location = table.locations[i];
-        const double ratio = stability_ratio(table, location, curve_at(location.curves, direction));
-        if (!std::isnan(ratio)) lost += (1.0 - ratio) / static_cast<double>(used.size());
-      }
-      if (lost < result.single_cost) result.single_cost = lost, result.single_direction = direction;
-    }
+    plan = plan_for_absolute(area, settings.turning_cost, result.single_cost);
   }
   result.cost = plan.cost;
   double limit = table.max_depth;

@@ -35,7 +35,6 @@ struct PathPlan {
   double axial_depth = 0.0;           // m: below the limit of every patch by the margin
   double cost = 0.0;                  // share of the whole that is lost or taken, changes included
   double single_cost = 0.0;           // the same for the best single direction
-  double single_direction = 0.0;      // rad
 };
 
 // `used`: the locations that the area has; the others are not asked. Throws std::invalid_argument where no direction
