@@ -28,19 +28,20 @@ void check_cut(const Tool& tool, const Cut& cut) {
 
 }  // namespace
 
-Displacement sampled_displacement(double first_time, double step, std::vector<Eigen::Vector3d> samples) {
+Displacement sampled_displacement(double first_time, double step, std::vector<Eigen::Vector3f> samples) {
   if (samples.empty() || !positive(step))
     throw std::invalid_argument("a sampled displacement needs samples and a positive step");
   Displacement result;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    result.reach = result.reach.cwiseMax(samples[i].cwiseAbs());
-    if (i > 0) result.speed = std::max(result.speed, (samples[i] - samples[i - 1]).norm() / step);
+    result.reach = result.reach.cwiseMax(samples[i].cast<double>().cwiseAbs());
+    if (i > 0) result.speed = std::max(result.speed, (samples[i] - samples[i - 1]).cast<double>().norm() / step);
   }
   result.at = [first_time, step, samples = std::move(samples)](double time) -> Eigen::Vector3d {
     const double position = std::clamp((time - first_time) / step, 0.0, static_cast<double>(samples.size() - 1));
     const auto low = static_cast<std::size_t>(position);
     const std::size_t high = std::min(low + 1, samples.size() - 1);
-    return samples[low] + (position - static_cast<double>(low)) * (samples[high] - samples[low]);
+    const Eigen::Vector3d from = samples[low].cast<double>();
+    return from + (position - static_cast<double>(low)) * (samples[high].cast<double>() - from);
   };
   return result;
 }

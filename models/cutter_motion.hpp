@@ -22,9 +22,10 @@ struct Displacement {
   double speed = 0.0;                               // m/s, largest
 };
 
-// Samples `step` s apart, the first one at `first_time`, with straight lines between; before and after them the tool
-// stays where it was at the end. Throws std::invalid_argument for no samples or a step that is not positive.
-[[nodiscard]] Displacement sampled_displacement(double first_time, double step, std::vector<Eigen::Vector3d> samples);
+// Samples (m; single precision is a thousandth of a nanometre) `step` s apart, the first one at `first_time`, with
+// straight lines between; before and after them the tool stays where it was at the end. Throws std::invalid_argument
+// for no samples or a step that is not positive.
+[[nodiscard]] Displacement sampled_displacement(double first_time, double step, std::vector<Eigen::Vector3f> samples);
 
 // A point of the edge in tool axes: its height is counted from the centre of the ball, or from an end mill's bottom.
 struct EdgePoint {

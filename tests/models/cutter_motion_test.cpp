@@ -76,10 +76,10 @@ TEST(CutterMotion, VibrationComesAfterTheTurning) {
   SweptCut c;
   c.cut.feed_direction = deg_to_rad(90);
   c.cut.tilt = 0.3;
-  const Eigen::Vector3d moved(3e-6, 1e-6, -2e-6);
-  c.displacement = sampled_displacement(1.0, 0.5, {Eigen::Vector3d::Zero(), moved});
-  EXPECT_EQ(c.displacement.reach, moved.cwiseAbs());
-  EXPECT_NEAR(c.displacement.speed, moved.norm() / 0.5, 1e-15);
+  const Eigen::Vector3f moved(3e-6F, 1e-6F, -2e-6F);
+  c.displacement = sampled_displacement(1.0, 0.5, {Eigen::Vector3f::Zero(), moved});
+  EXPECT_EQ(c.displacement.reach, moved.cast<double>().cwiseAbs());
+  EXPECT_NEAR(c.displacement.speed, moved.norm() / 0.5, 1e-12);
   const CutterMotion still = cutter_motion(c.tool, c.cut), motion = cutter_motion(c.tool, c.cut, c.displacement);
   const EdgePoint point = ball_edge_point(c.tool, 0.3);
   for (const auto& [time, part] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.25, 0.5}, {1.5, 1.0}, {9.0, 1.0}}) {

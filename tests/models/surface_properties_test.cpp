@@ -38,10 +38,12 @@ SweptCut random_cut(std::mt19937& random) {
   c.across = 0.12e-3;
   if (random() % 2 == 0) {
     const double frequency = between(50, 300), amplitude = between(0, 4e-6);
-    std::vector<Eigen::Vector3d> samples;
+    std::vector<Eigen::Vector3f> samples;
     for (int i = 0; i < 20000; ++i) {
       const double turn = kTwoPi * frequency * 2e-5 * i;
-      samples.emplace_back(amplitude * std::sin(turn), amplitude * std::cos(turn), 0.5 * amplitude * std::sin(turn));
+      samples.emplace_back(
+          Eigen::Vector3d(amplitude * std::sin(turn), amplitude * std::cos(turn), 0.5 * amplitude * std::sin(turn))
+              .cast<float>());
     }
     c.displacement = sampled_displacement(0.0, 2e-5, std::move(samples));
   }
