@@ -56,13 +56,21 @@ double coarsest_spacing(const Cut& cut) { return kPaperShare * std::min(cut.feed
 HeightMap uncut_map(double along, double across, double spacing) {
   if (!(along > 0.0 && across > 0.0 && spacing > 0.0) || !std::isfinite(along) || !std::isfinite(across))
     throw std::invalid_argument("a surface needs a positive size and spacing");
+  const auto cells = [spacing](double length) {
+    return static_cast<std::size_t>(std::max(1.0, std::ceil(length / spacing * (1.0 - 1e-12))));
+  };
+  return uncut_map(along, across, cells(along), cells(across));
+}
+
+HeightMap uncut_map(double along, double across, std::size_t cells_along, std::size_t cells_across) {
+  if (!(along > 0.0 && across > 0.0) || !std::isfinite(along) || !std::isfinite(across) || cells_along == 0 ||
+      cells_across == 0)
+    throw std::invalid_argument("a surface needs a positive size and cells in both directions");
   HeightMap map;
-  const double cells_along = std::max(1.0, std::ceil(along / spacing * (1.0 - 1e-12))),
-               cells_across = std::max(1.0, std::ceil(across / spacing * (1.0 - 1e-12)));
-  map.along = static_cast<std::size_t>(cells_along) + 1;
-  map.across = static_cast<std::size_t>(cells_across) + 1;
-  map.spacing_along = along / cells_along;
-  map.spacing_across = across / cells_across;
+  map.along = cells_along + 1;
+  map.across = cells_across + 1;
+  map.spacing_along = along / static_cast<double>(cells_along);
+  map.spacing_across = across / static_cast<double>(cells_across);
   map.heights.assign(map.along * map.across, std::numeric_limits<double>::quiet_NaN());
   return map;
 }

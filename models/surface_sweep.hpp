@@ -23,6 +23,8 @@ namespace stillcut {
 // Heights not cut yet over `along` x `across` m, the corners included, points at most `spacing` apart. Throws
 // std::invalid_argument for sizes that are not positive.
 [[nodiscard]] HeightMap uncut_map(double along, double across, double spacing);
+// The same with so many cells in each direction, one point more than that.
+[[nodiscard]] HeightMap uncut_map(double along, double across, std::size_t cells_along, std::size_t cells_across);
 
 // A map cut into tiles of at most `points` x `points`.
 [[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 256);
