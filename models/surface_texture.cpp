@@ -16,9 +16,10 @@ namespace stillcut {
 namespace {
 
 constexpr std::size_t kLeastInProfile = 8, kPadding = 4;
-constexpr double kMostUnknown = 0.1;   // gaps put power beside every line
-constexpr double kLeastRepeats = 1.9;  // twice, but for what the form that was removed shifts a slow wave
-constexpr double kHannReach = 2.0;     // a line's half width, in resolved frequencies
+constexpr double kMostUnknown = 0.1;     // gaps put power beside every line
+constexpr double kLeastRepeats = 1.9;    // twice, but for what the form that was removed shifts a slow wave
+constexpr double kDiscrimination = 0.1;  // of the total height, ISO 4287
+constexpr double kHannReach = 2.0;       // a line's half width, in resolved frequencies
 
 std::vector<double> hann(std::size_t count) {
   std::vector<double> window(count);
@@ -99,6 +100,40 @@ TextureInterval texture_interval(const TextureSpectrum& spectrum) {
        ++k)
     line += density[k];
   return {1.0 / (spectrum.frequencies[strongest] + shift * step), line / total};
+}
+
+double mean_element_width(const HeightMap& map, ProfileDirection direction) {
+  require_sound_map(map);
+  double sum = 0.0, counted = 0.0;
+  for (std::size_t p = 0; p < profile_count(map, direction); ++p) {
+    std::vector<double> heights = surface_profile(map, direction, p);
+    if (static_cast<double>(known_points(heights)) < (1.0 - kMostUnknown) * static_cast<double>(heights.size()))
+      continue;
+    remove_form(heights, SurfaceForm::linear);
+    double low = kInfinity, high = -kInfinity;
+    for (const double height : heights) {
+      if (std::isnan(height)) continue;
+      low = std::min(low, height), high = std::max(high, height);
+    }
+    const double discrimination = kDiscrimination * (high - low);
+    // An element begins where the profile last rose through the line before it became a hill.
+    double rising = kNaN, first = kNaN, last = kNaN, elements = -1.0;
+    bool valley = false;
+    for (std::size_t i = 1; i < heights.size(); ++i) {
+      if (heights[i - 1] < 0.0 && heights[i] >= 0.0)
+        rising = static_cast<double>(i) - heights[i] / (heights[i] - heights[i - 1]);
+      if (heights[i] < -discrimination) valley = true;
+      if (!valley || !(heights[i] > discrimination) || std::isnan(rising)) continue;
+      valley = false;
+      if (std::isnan(first)) first = rising;
+      last = rising;
+      elements += 1.0;
+    }
+    if (!(elements >= 1.0)) continue;
+    sum += (last - first) / elements * profile_spacing(map, direction);
+    counted += 1.0;
+  }
+  return counted > 0.0 ? sum / counted : kNaN;
 }
 
 }  // namespace stillcut

@@ -30,4 +30,9 @@ struct TextureInterval {
 // Of the strongest line that repeats at least twice within a profile, found between the frequencies by a parabola.
 [[nodiscard]] TextureInterval texture_interval(const TextureSpectrum& spectrum);
 
+// Mean width of profile elements, a hill and the valley beside it (R_Sm of ISO 4287): what the eye counts where no line
+// stands out. Hills and valleys lower than a tenth of the profile's total height are not counted. Mean over the
+// profiles, their least-squares line removed, m; NaN where none has two elements or is known well enough.
+[[nodiscard]] double mean_element_width(const HeightMap& map, ProfileDirection direction);
+
 }  // namespace stillcut

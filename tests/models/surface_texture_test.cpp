@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -85,6 +86,25 @@ TEST(TextureSpectrum, IsRefusedWhereTooLittleIsKnown) {
     for (std::size_t i = 0; i < 3; ++i) map.at(i, j) = kNaN;
   EXPECT_THROW((void)texture_spectrum(map, ProfileDirection::along), std::invalid_argument);
   EXPECT_NO_THROW((void)texture_spectrum(map, ProfileDirection::across));
+}
+
+// Fails where a ripple is taken for an element, or one at the end that is not whole.
+TEST(MeanElementWidth, IsTheDistanceOfHillsAndLeavesOutRipples) {
+  const HeightMap map = surface_of(500, 20, 4e-6, 5e-6, [](double x, double) {
+    return 1e-6 * std::sin(2.0 * std::numbers::pi * x / 0.13e-3 + 0.4) +
+           0.05e-6 * std::sin(2.0 * std::numbers::pi * x / 0.017e-3) + 0.02 * x;
+  });
+  EXPECT_NEAR(mean_element_width(map, ProfileDirection::along), 0.13e-3, 0.01 * 0.13e-3);
+  EXPECT_TRUE(std::isnan(mean_element_width(map, ProfileDirection::across)));  // level
+  // White noise, each point beyond the discrimination with the same chance, up or down: so many points until both came.
+  const HeightMap noise = noise_map(4000, 40, 1e-6, 7);
+  double chance = 0.0;
+  for (std::size_t j = 0; j < noise.across; ++j) {
+    const std::vector<double> row = surface_profile(noise, ProfileDirection::along, j);
+    const auto [low, high] = std::minmax_element(row.begin(), row.end());
+    chance += 0.5 * std::erfc(0.1 * (*high - *low) / 1e-6 / std::sqrt(2.0)) / 40;
+  }
+  EXPECT_NEAR(mean_element_width(noise, ProfileDirection::along), 2.0 / chance * 4e-6, 0.03 * 2.0 / chance * 4e-6);
 }
 
 }  // namespace
