@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "models/milled_stock.hpp"
 #include "models/milling_simulation.hpp"
@@ -201,7 +202,12 @@ VibratingCutter vibrating_cutter(const VibrationSetup& setup, double along, doub
   Eigen::Vector3d reach = vibrating_passes(trial, {passes.front()}).displacement.reach;
   for (int round = 0; round < kMostRounds; ++round) {
     result.motion.displacement.reach = kReachRoom * reach;
-    passes = passes_over(result.motion, setup.cut, along, across);
+    try {
+      passes = passes_over(result.motion, setup.cut, along, across);
+    } catch (const std::invalid_argument&) {  // without vibration it is refused above
+      throw std::runtime_error("the tool vibrates by " + std::to_string(std::lround(1e6 * reach.norm())) +
+                               " um, farther than its ball reaches; the cut is unstable");
+    }
     result.vibration = vibrating_passes(setup, passes);
     reach = result.vibration.displacement.reach;
     if ((reach.array() <= result.motion.displacement.reach.array()).all()) {
