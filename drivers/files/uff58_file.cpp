@@ -67,7 +67,10 @@ class UffReader {
     return line;
   }
 
-  static bool is_delimiter(std::string_view line) { return line.size() >= 2 && uff_bare(line) == "-1"; }
+  // In the first six columns: further on a dataset may have a -1 of its own.
+  static bool is_delimiter(std::string_view line) {
+    return uff_bare(line.substr(0, 6)) == "-1" && uff_bare(line).size() == 2;
+  }
 
   void read_dataset(UffFile& content, std::string_view head, int begin) {
     const std::string number(field(head, 0, 6));

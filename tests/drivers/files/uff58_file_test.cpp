@@ -50,8 +50,8 @@ const UffFunction& only_function(const UffFile& content) {
 
 // Columns that touch, D for E, a dataset of another kind before, CRLF. Fails with a column, place or part that is off.
 TEST(UffFile, OfTheFormatIsRead) {
-  std::string text = "    -1\n   151\nany model\nby any program\n    -1\n" + kUnitsSet +
-                     head_of(form_of(5, 4, 1, "  1.00000E+01", "  2.50000E-01")) +
+  std::string text = "    -1     \n   151     \nany model\nby any program\n         0        -1\n        -1\n    -1\n" +
+                     kUnitsSet + head_of(form_of(5, 4, 1, "  1.00000E+01", "  2.50000E-01")) +
                      " -1.00000E+00-2.00000E+00  3.00000E-03  4.00000D-03 -5.00000E+10  6.00000E-10\n"
                      "  7.00000E+00  8.00000E+00\n    -1\n";
   for (const bool carriage_return : {false, true}) {
@@ -64,7 +64,7 @@ TEST(UffFile, OfTheFormatIsRead) {
     EXPECT_EQ(content.units->length, 1000.0);
     EXPECT_EQ(content.units->force, 1000.0);
     const UffFunction& f = only_function(content);
-    EXPECT_EQ(f.line, 12);
+    EXPECT_EQ(f.line, 14);
     EXPECT_EQ(f.id[0], "accelerance of the tool");
     EXPECT_EQ(f.id[2], "01-Mar-24 10:11:12");
     EXPECT_EQ(f.type, kUffFrequencyResponse);
