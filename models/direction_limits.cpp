@@ -16,11 +16,7 @@ namespace {
 std::vector<DepthLimit> paper_limits(const Tool& tool, const Material& material, const Cut& cut,
                                      std::span<const Mode> modes, const DirectionStudy& study) {
   const auto projected = [&](double frequency) {
-    const PaperReceptance receptances = paper_projection(receptance(modes, frequency), cut.feed_direction);
-    Eigen::Matrix2cd feed_plane = Eigen::Matrix2cd::Zero();
-    feed_plane(0, 0) = receptances.feed;
-    feed_plane(1, 1) = receptances.cross_feed;
-    return feed_plane;
+    return paper_feed_plane(receptance(modes, frequency), cut.feed_direction);
   };
   return zeroth_order_limits(linear_cut(tool, material, cut), modes, projected, study.speeds, study.max_depth);
 }
@@ -40,11 +36,6 @@ std::vector<double> limits_at(const Tool& tool, const Material& material, const 
   std::transform(limits.begin(), limits.end(), depths.begin(),
                  [](const DepthLimit& limit) { return std::isnan(limit.depth) ? 0.0 : limit.depth; });
   return depths;
-}
-
-Milling opposite(Milling milling) {
-  if (milling == Milling::down) return Milling::up;
-  return milling == Milling::up ? Milling::down : milling;
 }
 
 // Whether b is a's opposite, to the rounding of degrees.

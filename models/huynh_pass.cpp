@@ -7,6 +7,7 @@
 #include "models/feed_path.hpp"
 #include "models/four_axis_arm.hpp"
 #include "models/newmark_robot.hpp"
+#include "models/wall_profile.hpp"
 
 namespace stillcut {
 namespace {
@@ -139,7 +140,7 @@ void measure_wall(const HuynhPass& pass, const PassGeometry& g, const PartMillin
   for (std::size_t i = 0; i < slices.size(); ++i) {
     std::vector<double> heights = wall_profile(slices[i], line);
     for (double& height : heights) height -= nominal;
-    result.wall.push_back(roughness(heights, line.spacing));
+    result.wall.push_back(profile_roughness(heights, line.spacing));
     if (i == slices.size() / 2) result.profile = std::move(heights);
   }
 }
@@ -187,12 +188,11 @@ Spectrum amplitude_spectrum(std::span<const double> samples, double step, double
   return spectrum;
 }
 
-RoughnessRange over_slices(std::span<const Roughness> wall) {
+RoughnessRange over_slices(std::span<const ProfileRoughness> wall) {
   if (wall.empty()) throw std::invalid_argument("a wall needs slices");
-  RoughnessRange range{.mean = {}, .low = wall[0], .high = wall[0]};
-  for (const auto figure : {&Roughness::ra, &Roughness::rq, &Roughness::rt, &Roughness::mean, &Roughness::slope})
-    for (const Roughness& slice : wall) {
-      range.mean.*figure += slice.*figure / static_cast<double>(wall.size());
+  RoughnessRange range{.mean = mean_of(wall), .low = wall[0], .high = wall[0]};
+  for (const auto figure : {&ProfileRoughness::ra, &ProfileRoughness::rq, &ProfileRoughness::rt})
+    for (const ProfileRoughness& slice : wall) {
       range.low.*figure = std::min(range.low.*figure, slice.*figure);
       range.high.*figure = std::max(range.high.*figure, slice.*figure);
     }

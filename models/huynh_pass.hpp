@@ -19,7 +19,7 @@
 
 #include "models/machining.hpp"
 #include "models/part_milling.hpp"
-#include "models/wall_profile.hpp"
+#include "models/surface_roughness.hpp"
 
 namespace stillcut {
 
@@ -64,16 +64,16 @@ struct HuynhPassResult {
   Spectrum cross_spectrum;                             // N
   double deviation_mean = 0.0, deviation_peak = 0.0;   // m, of the tool across the feed; positive: into the part
   double feed_vibration = 0.0, cross_vibration = 0.0;  // m/s^2, rms of the tool's acceleration
-  std::vector<Roughness> wall;                         // m, of every slice from the tip up; its mean: into the part too
+  std::vector<ProfileRoughness> wall;                  // m, of every slice from the tip up
   std::vector<double> profile;  // m, the middle slice's wall, every micrometre, positive into the part
   std::vector<double> turns, feed_force, cross_force, deviation;  // the last two turns; N, m
 };
 
-// Mean over the slices, and the smallest and the largest.
+// Mean over the slices, and the smallest and the largest R_a, R_q and R_t.
 struct RoughnessRange {
-  Roughness mean, low, high;
+  ProfileRoughness mean, low, high;
 };
-RoughnessRange over_slices(std::span<const Roughness> wall);
+RoughnessRange over_slices(std::span<const ProfileRoughness> wall);
 
 // Runs the pass. `progress` is told the share done. Throws std::invalid_argument where the arm cannot follow the path
 // or the pass cannot be simulated, std::runtime_error where the motion grows without bound.

@@ -17,4 +17,7 @@ struct PaperReceptance {
 // from +X toward +Y.
 PaperReceptance paper_projection(const Eigen::Matrix3cd& workpiece_receptance, double feed_direction);
 
+// The same as the 2 x 2 matrix that zeroth order asks for (models/zeroth_order.hpp).
+Eigen::Matrix2cd paper_feed_plane(const Eigen::Matrix3cd& workpiece_receptance, double feed_direction);
+
 }  // namespace stillcut

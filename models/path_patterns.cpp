@@ -25,6 +25,13 @@ std::string length_in_mm(double length) {
   return text;
 }
 
+// Its lower left and its upper right corner.
+std::pair<Eigen::Vector2d, Eigen::Vector2d> box_around(const Contour& contour) {
+  Eigen::Vector2d low = contour.front(), high = low;
+  for (const Eigen::Vector2d& point : contour) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  return {low, high};
+}
+
 void check(const Region& region, double angle, const PatternSettings& settings) {
   const double diameter = 2.0 * settings.tool_radius;
   if (!(diameter > 0.0 && std::isfinite(diameter)))
@@ -38,8 +45,7 @@ void check(const Region& region, double angle, const PatternSettings& settings) 
   if (!(std::isfinite(settings.z) && settings.clearance >= 0.0 && std::isfinite(settings.clearance)))
     throw std::invalid_argument("the tip's height or its clearance is no height; give numbers in mm, clearance from 0");
   if (!std::isfinite(angle)) throw std::invalid_argument("the pattern's angle is no number; give it in degrees");
-  Eigen::Vector2d low = region.polygon.front(), high = low;
-  for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  const auto [low, high] = box_around(region.polygon);
   if ((high - low).maxCoeff() > kMostPasses * settings.step_over)
     throw std::invalid_argument("a step over of " + length_in_mm(settings.step_over) +
                                 " makes more than 10000 passes; give a larger one");
@@ -75,8 +81,7 @@ Contour without_straight_points(const Contour& points) {
 }
 
 PlanePieces in_window(const PlanePieces& pieces, const Region& region, const PatternWindow& window) {
-  Eigen::Vector2d low = region.polygon.front(), high = low;
-  for (const Eigen::Vector2d& point : region.polygon) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  const auto [low, high] = box_around(region.polygon);
   const double left = std::max(window.x_begin, low.x()), right = std::min(window.x_end, high.x());
   const double bottom = std::max(window.y_begin, low.y()), top = std::min(window.y_end, high.y());
   if (!(left < right && bottom < top)) return {};

@@ -102,7 +102,7 @@ std::vector<PatternPass> line_passes(const PlanePiece& piece, bool zig_zag, doub
     while (end < lines.size() && lines[end].y == lines[first].y) ++end;
     const bool backward = zig_zag && row % 2 == 1;
     Milling milling = settings.milling;
-    if (backward) milling = milling == Milling::down ? Milling::up : Milling::down;
+    if (backward) milling = opposite(milling);
     for (std::size_t i = 0; i < end - first; ++i) {
       const PatternLine& line = lines[backward ? end - 1 - i : first + i];
       Contour points{back * Eigen::Vector2d(line.begin, line.y), back * Eigen::Vector2d(line.end, line.y)};

@@ -40,10 +40,9 @@ Eigen::Matrix<double, N, 1> fitted_form(std::span<const double> heights, Basis b
 }
 
 template <int N, class Basis>
-Eigen::Matrix<double, N, 1> take_off(std::span<double> heights, Basis basis_at) {
-  Eigen::Matrix<double, N, 1> form = fitted_form<N>(heights, basis_at);
+void take_off(std::span<double> heights, Basis basis_at) {
+  const Eigen::Matrix<double, N, 1> form = fitted_form<N>(heights, basis_at);
   for (std::size_t k = 0; k < heights.size(); ++k) heights[k] -= form.dot(basis_at(k));
-  return form;
 }
 
 // From -1 at the first to 1 at the last of `count` points.
@@ -53,19 +52,13 @@ double centred(std::size_t index, std::size_t count) {
 
 }  // namespace
 
-ProfileForm remove_form(std::span<double> profile, SurfaceForm form) {
-  const std::size_t count = profile.size();
-  const double step = count > 1 ? 2.0 / static_cast<double>(count - 1) : 1.0;
+void remove_form(std::span<double> profile, SurfaceForm form) {
+  const auto u = [&](std::size_t k) { return centred(k, profile.size()); };
   if (form == SurfaceForm::linear) {
-    const Eigen::Vector2d line =
-        take_off<2>(profile, [&](std::size_t k) { return Eigen::Vector2d(1.0, centred(k, count)); });
-    return {.middle = line[0], .rise = line[1] * step};
+    take_off<2>(profile, [&](std::size_t k) { return Eigen::Vector2d(1.0, u(k)); });
+    return;
   }
-  const Eigen::Vector3d parabola = take_off<3>(profile, [&](std::size_t k) {
-    const double u = centred(k, count);
-    return Eigen::Vector3d(1.0, u, u * u);
-  });
-  return {.middle = parabola[0], .rise = parabola[1] * step, .bend = parabola[2] * step * step};
+  take_off<3>(profile, [&](std::size_t k) { return Eigen::Vector3d(1.0, u(k), u(k) * u(k)); });
 }
 
 void remove_form(HeightMap& map, SurfaceForm form) {

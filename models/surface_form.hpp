@@ -10,14 +10,9 @@ namespace stillcut {
 
 enum class SurfaceForm { linear, quadratic };  // line or plane; polynomial of order two
 
-// Of a profile, in its own unit: height at the middle, rise a point there, and half the change of rise a point.
-struct ProfileForm {
-  double middle = 0.0, rise = 0.0, bend = 0.0;
-};
-
-// Takes the form off and returns it. Throws std::invalid_argument where fewer points are known than would show anything
+// Takes the form off a profile. Throws std::invalid_argument where fewer points are known than would show anything
 // beside the form (three for a line), and for an infinite height.
-ProfileForm remove_form(std::span<double> profile, SurfaceForm form);
+void remove_form(std::span<double> profile, SurfaceForm form);
 
 // The same of a map: plane, or all terms up to order two. Throws std::invalid_argument also where the known points lie
 // so that they tell no such form, as on one line.

@@ -42,21 +42,6 @@ double mean_of_total_heights(std::span<const double> heights, double spacing, do
   return sum / static_cast<double>(lengths);
 }
 
-// A mean of what is there: parameters that have no value are left out.
-class Mean {
- public:
-  void add(double value) {
-    if (std::isnan(value)) return;
-    sum_ += value;
-    ++count_;
-  }
-  [[nodiscard]] double value() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : kNaN; }
-
- private:
-  double sum_ = 0.0;
-  std::size_t count_ = 0;
-};
-
 }  // namespace
 
 HeightStatistics height_statistics(std::span<const double> heights) {
@@ -108,27 +93,44 @@ ProfileRoughness profile_roughness(std::span<const double> heights, double spaci
           .unknown = profile.size() - known};
 }
 
+ProfileRoughness mean_of(std::span<const ProfileRoughness> profiles) {
+  ProfileRoughness mean;
+  for (const auto figure : {&ProfileRoughness::ra, &ProfileRoughness::rq, &ProfileRoughness::rt, &ProfileRoughness::rz,
+                            &ProfileRoughness::rsk, &ProfileRoughness::rku}) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const ProfileRoughness& profile : profiles) {
+      if (std::isnan(profile.*figure)) continue;
+      sum += profile.*figure;
+      ++count;
+    }
+    mean.*figure = count > 0 ? sum / static_cast<double>(count) : kNaN;
+  }
+  for (const ProfileRoughness& profile : profiles) mean.unknown += profile.unknown;
+  return mean;
+}
+
 MeanRoughness mean_roughness(const HeightMap& map, ProfileDirection direction, const RoughnessSettings& settings) {
   require_sound_map(map);
   const double spacing = profile_spacing(map, direction);
   MeanRoughness result;
-  Mean ra, rq, rt, rz, rsk, rku;
+  std::vector<ProfileRoughness> profiles;
+  std::size_t unknown = 0;
   for (std::size_t p = 0; p < profile_count(map, direction); ++p) {
     const std::vector<double> heights = surface_profile(map, direction, p);
     const std::size_t known = known_points(heights);
-    result.mean.unknown += heights.size() - known;
+    unknown += heights.size() - known;
     if (!known_enough(known, heights.size())) {
       ++result.left_out;
       continue;
     }
-    const ProfileRoughness one = profile_roughness(heights, spacing, settings);
-    ra.add(one.ra), rq.add(one.rq), rt.add(one.rt), rz.add(one.rz), rsk.add(one.rsk), rku.add(one.rku);
-    ++result.profiles;
+    profiles.push_back(profile_roughness(heights, spacing, settings));
   }
-  if (result.profiles == 0)
+  if (profiles.empty())
     throw std::invalid_argument("less than half of every profile is known; the roughness of the surface is open");
-  result.mean.ra = ra.value(), result.mean.rq = rq.value(), result.mean.rt = rt.value(), result.mean.rz = rz.value();
-  result.mean.rsk = rsk.value(), result.mean.rku = rku.value();
+  result.mean = mean_of(profiles);
+  result.mean.unknown = unknown;  // those left out too
+  result.profiles = profiles.size();
   return result;
 }
 

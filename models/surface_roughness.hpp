@@ -38,6 +38,10 @@ struct ProfileRoughness {
 [[nodiscard]] ProfileRoughness profile_roughness(std::span<const double> heights, double spacing,
                                                  const RoughnessSettings& settings = {});
 
+// Means of several profiles: of each parameter over those that have one, NaN where none has. `unknown` is of all of
+// them.
+[[nodiscard]] ProfileRoughness mean_of(std::span<const ProfileRoughness> profiles);
+
 // Means over the profiles of a map, the form of each removed by itself. A profile of which too little is known is left
 // out and counted; throws std::invalid_argument where no profile is left.
 struct MeanRoughness {

@@ -3,9 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "models/surface_form.hpp"
-#include "models/surface_roughness.hpp"
-
 namespace stillcut {
 
 std::vector<double> wall_profile(const PartSlice& slice, const WallLine& line) {
@@ -20,19 +17,6 @@ std::vector<double> wall_profile(const PartSlice& slice, const WallLine& line) {
     if (!std::isfinite(heights.back())) throw std::runtime_error("the wall profile has a place without a wall");
   }
   return heights;
-}
-
-Roughness roughness(std::span<const double> heights, double spacing) {
-  if (heights.size() < 3 || !(spacing > 0.0))
-    throw std::invalid_argument("roughness needs a spacing and at least three points");
-  std::vector<double> profile(heights.begin(), heights.end());
-  const ProfileForm line = remove_form(profile, SurfaceForm::linear);
-  const HeightStatistics statistics = height_statistics(profile);
-  return {.ra = statistics.mean_distance,
-          .rq = statistics.rms,
-          .rt = statistics.highest - statistics.lowest,
-          .mean = line.middle,
-          .slope = line.rise / spacing};
 }
 
 }  // namespace stillcut

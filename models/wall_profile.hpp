@@ -1,4 +1,4 @@
-// The machined wall as a stylus would measure it: a slice's contour along a line, and the figures of its roughness.
+// The machined wall as a stylus would measure it: a slice's contour along a line.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,15 +21,5 @@ struct WallLine {
 // How far the wall is from the line at each point, m; larger is deeper in the part. Throws std::invalid_argument for a
 // line of fewer than three points, std::runtime_error where there is no wall within reach.
 std::vector<double> wall_profile(const PartSlice& slice, const WallLine& line);
-
-// Of a profile less its least-squares line, in the profile's own unit: arithmetic and quadratic mean (ISO 4287), total
-// height. `mean` and `slope` (a point's rise over the distance `spacing` gives) are the line's, at the middle.
-struct Roughness {
-  double ra = 0.0, rq = 0.0, rt = 0.0;
-  double mean = 0.0, slope = 0.0;
-};
-
-// Throws std::invalid_argument for fewer than three points or a spacing that is not positive.
-Roughness roughness(std::span<const double> heights, double spacing);
 
 }  // namespace stillcut

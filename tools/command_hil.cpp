@@ -22,6 +22,7 @@
 #include "tools/plant.hpp"
 #include "tools/plot_hil.hpp"
 #include "tools/progress.hpp"
+#include "tools/roughness_json.hpp"
 
 namespace stillcut {
 namespace {
@@ -58,7 +59,7 @@ nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& m
           {"false_alarms", score.false_alarms},
           {"corrections", score.corrections},
           {"peak_displacement_um", score.peak_displacement_um},
-          {"ra_um", or_null(score.ra_um)},
+          {"ra_um", um_json(score.roughness, &ProfileRoughness::ra)},
           {"tick_p50_us", ticks ? Json(ticks->p50_us) : Json(nullptr)},
           {"tick_p9999_us", ticks ? Json(ticks->p9999_us) : Json(nullptr)},
           {"tick_max_us", ticks ? Json(ticks->max_us) : Json(nullptr)},
@@ -68,13 +69,16 @@ nlohmann::ordered_json score_json(const HilScore& score, const VirtualMachine& m
           {"chatter_frequency_hz", chatter ? Json(score.spells.front().frequency_hz) : Json(nullptr)},
           {"corrections_refused", machine.controller().refused()},
           {"removed_mm3_per_min", or_null(score.removed_mm3_per_min)},
+          {"surface", machine.surface().name()},
+          {"rq_um", um_json(score.roughness, &ProfileRoughness::rq)},
+          {"rt_um", um_json(score.roughness, &ProfileRoughness::rt)},
           {"stopped", score.stopped},
           {"frames_sent", machine.frames_sent()},
           {"frames_lost", machine.frames_lost()},
           {"behind_ms", plant ? Json(std::max(0.0, plant->behind_ms)) : Json(nullptr)}};
 }
 
-void print_verdict(const Scenario& scenario, const HilScore& score, bool shadow) {
+void print_verdict(const Scenario& scenario, const VirtualMachine& machine, const HilScore& score, bool shadow) {
   std::printf("%s\n", scenario.title.c_str());
   for (const ChatterSpell& spell : score.spells)
     std::printf("  chatter from %.2f to %.2f s at %.1f Hz, up to %.0f µm%s\n", spell.start, spell.end,
@@ -88,7 +92,7 @@ void print_verdict(const Scenario& scenario, const HilScore& score, bool shadow)
   std::printf("  %d false alarms, %d corrections%s\n", score.false_alarms, score.corrections,
               shadow ? " (shadow: shown, not followed)" : "");
   std::printf("  peak displacement %.0f µm", score.peak_displacement_um);
-  if (score.ra_um) std::printf(", wall Ra %.2f µm", *score.ra_um);
+  if (score.roughness) std::printf(", %s Ra %.2f µm", machine.surface().name(), 1e6 * score.roughness->ra);
   if (score.removed_mm3_per_min) std::printf(", %.0f mm³ a minute", *score.removed_mm3_per_min);
   if (score.stopped) std::printf(", stopped on request");
   std::printf("\n");
@@ -169,7 +173,7 @@ void report(const HilOptions& options, const Cell& cell, const Scenario& scenari
   }
   if (options.json) std::cout << score_json(score, machine, run.ticks, run.plant).dump() << '\n';
   if (options.json || options.events == "-") return;
-  print_verdict(scenario, score, options.shadow);
+  print_verdict(scenario, machine, score, options.shadow);
   if (run.ticks)
     std::printf("  tick %.0f µs (median), %.0f µs (99.99 %%), %.0f µs (longest)\n", run.ticks->p50_us,
                 run.ticks->p9999_us, run.ticks->max_us);

@@ -19,6 +19,8 @@
 #include "tools/output_file.hpp"
 #include "tools/plot_simulation.hpp"
 #include "tools/progress.hpp"
+#include "tools/roughness_json.hpp"
+#include "tools/surface_recorder.hpp"
 
 namespace stillcut {
 namespace {
@@ -178,11 +180,21 @@ struct Peaks {
   }
 };
 
+std::string surface_text(const SurfaceRecorder& surface, const std::optional<ProfileRoughness>& roughness) {
+  if (!roughness) return std::string("no 0.8 mm of ") + surface.name() + " to measure";
+  std::array<char, 96> text{};
+  (void)std::snprintf(text.data(), text.size(), "%s Ra %.2f, Rq %.2f, Rt %.2f µm", surface.name(), 1e6 * roughness->ra,
+                      1e6 * roughness->rq, 1e6 * roughness->rt);
+  return text.data();
+}
+
 void print_summary(const SimulateOptions& options, std::int64_t rows, double rate_hz, const Peaks& peaks,
-                   const std::optional<CanOutput>& can) {
+                   const SurfaceRecorder& surface, const std::optional<CanOutput>& can) {
   if (can && can->saturated() > 0)
     std::cerr << "stillcut: " << options.can << ": " << can->saturated()
               << " samples stand at the end of the sensor's range\n";
+  if (!options.json && (options.csv == "-" || options.can == "-")) return;
+  const std::optional<ProfileRoughness> roughness = mean_of(surface.lengths());
   if (options.json) {
     nlohmann::ordered_json summary{{"duration_s", options.duration_s},
                                    {"rows", rows},
@@ -190,12 +202,17 @@ void print_summary(const SimulateOptions& options, std::int64_t rows, double rat
                                    {"peak_force_n", peaks.force},
                                    {"peak_displacement_um", peaks.displacement * 1e6},
                                    {"peak_acceleration_m_per_s2", peaks.acceleration},
-                                   {"largest_chip_um", peaks.chip * 1e6}};
+                                   {"largest_chip_um", peaks.chip * 1e6},
+                                   {"surface", surface.name()},
+                                   {"ra_um", um_json(roughness, &ProfileRoughness::ra)},
+                                   {"rq_um", um_json(roughness, &ProfileRoughness::rq)},
+                                   {"rt_um", um_json(roughness, &ProfileRoughness::rt)}};
     if (can) summary.update({{"frames", can->frames()}, {"samples_saturated", can->saturated()}});
     std::cout << summary.dump() << '\n';
-  } else if (options.csv != "-" && options.can != "-") {
-    std::printf("%g s milled: peak force %.0f N, displacement %.0f µm, acceleration %.0f m/s², chip %.0f µm\n",
-                options.duration_s, peaks.force, peaks.displacement * 1e6, peaks.acceleration, peaks.chip * 1e6);
+  } else {
+    std::printf("%g s milled: peak force %.0f N, displacement %.0f µm, acceleration %.0f m/s², chip %.0f µm; %s\n",
+                options.duration_s, peaks.force, peaks.displacement * 1e6, peaks.acceleration, peaks.chip * 1e6,
+                surface_text(surface, roughness).c_str());
   }
 }
 
@@ -220,6 +237,7 @@ void simulate(const SimulateOptions& options) {
   if (!options.can.empty()) can.emplace(options.can, cell, options);
 
   Peaks peaks;
+  SurfaceRecorder surface{setup.tool, setup.cut, 1.0 / rate_hz};
   std::vector<MillingState> states;
   Progress progress("milling");
   std::string stopped;  // why, where the motion could not be continued
@@ -236,6 +254,7 @@ void simulate(const SimulateOptions& options) {
     if (can) can->write(state);
     if (!options.plot.empty()) states.push_back(state);
     peaks.add(state);
+    if (written > 0) surface.add(state, milling.conditions());
     if (written % 1024 == 0) progress.update(static_cast<double>(written) / static_cast<double>(rows));
   }
   progress.finish();
@@ -246,7 +265,7 @@ void simulate(const SimulateOptions& options) {
   if (!stopped.empty())
     throw InputError((options.robot.empty() ? cell.file : std::filesystem::path(options.robot)).string(), 0,
                      "the simulation stopped " + stopped);
-  print_summary(options, rows, rate_hz, peaks, can);
+  print_summary(options, rows, rate_hz, peaks, surface, can);
 }
 
 }  // namespace

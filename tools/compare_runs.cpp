@@ -10,7 +10,6 @@
 
 #include "models/lobes.hpp"
 #include "models/modal_refit.hpp"
-#include "models/wall_roughness.hpp"
 #include "tools/cell_posture.hpp"
 
 namespace stillcut {
@@ -55,39 +54,34 @@ double limit_of(const Cell& cell, const CellDynamics& dynamics, Cut cut, const R
   return std::isnan(limit) ? 0.0 : limit;
 }
 
-// R_a of each sampling length, and the time at which its middle was cut.
-void measure_wall(const Cell& cell, ComparedRun& run) {
+// When the middle of each sampling length was cut, and R_a of those of the last second.
+void place_in_time(ComparedRun& run) {
   const auto& moments = run.machine->moments();
-  const auto& wall = run.machine->wall();
-  if (wall.empty()) return;
-  double deepest = 0.0, last_full = 0.0, sum = 0.0;
+  double deepest = 0.0, last_full = 0.0;
   for (const MachineMoment& moment : moments) deepest = std::max(deepest, moment.axial_depth);
   for (const MachineMoment& moment : moments)
     if (moment.axial_depth >= kNearlyDeepest * deepest) last_full = moment.time;
-  double way = 0.0, from = wall.front().along;
-  int count = 0;
-  for (std::size_t i = 1; i < moments.size() && from + kWallSamplingLength <= wall.back().along; ++i) {
+  double way = 0.0;
+  auto length = run.score.lengths.begin();
+  std::vector<ProfileRoughness> at_end;
+  for (std::size_t i = 1; i < moments.size() && length != run.score.lengths.end(); ++i) {
     way += moments[i].feed_rate * (moments[i].time - moments[i - 1].time);
-    if (way < from + 0.5 * kWallSamplingLength) continue;
-    const double ra = wall_roughness_at(wall, 0.5 * cell.tool->diameter, from);
-    run.wall_time.push_back(moments[i].time);
-    run.wall_ra.push_back(ra);
-    from += kWallSamplingLength;
+    if (way < length->from + 0.5 * kSamplingLength) continue;
+    run.surface_time.push_back(moments[i].time);
     const double before_end = last_full - kBeforeExit - moments[i].time;
-    if (!std::isfinite(ra) || before_end < 0.0 || before_end > kAtTheEnd) continue;
-    sum += ra;
-    ++count;
+    if (length->roughness && before_end >= 0.0 && before_end <= kAtTheEnd) at_end.push_back(*length->roughness);
+    ++length;
   }
-  if (count > 0) run.ra_at_end = sum / count;
+  run.ra_at_end = mean_of(at_end).ra;
 }
 
 ComparedRun run_once(std::string name, Cell cell, RuntimeMode mode, const Scenario& scenario, std::int64_t origin_ns,
                      const std::function<void(double)>& progress) {
   cell.mode = mode;
-  ComparedRun run{std::move(name), std::make_unique<VirtualMachine>(cell, scenario, origin_ns), {}, {}, {}, {}};
+  ComparedRun run{std::move(name), std::make_unique<VirtualMachine>(cell, scenario, origin_ns), {}, {}, {}};
   run.heard = run_in_data_time(cell, *run.machine, progress);
   run.score = score_run(*run.machine, run.heard.events);
-  measure_wall(cell, run);
+  place_in_time(run);
   return run;
 }
 
@@ -132,11 +126,12 @@ std::vector<ComparedRun> compare_runs(const Cell& cell, const Scenario& scenario
 }
 
 void print_comparison(const std::vector<ComparedRun>& runs) {
-  std::printf("  %-17s %9s %9s %10s %13s %16s\n", "", "chatter", "peak", "wall R_a", "R_a, last s", "metal removed");
+  const std::string ra = std::string(runs.front().machine->surface().name()) + " R_a";
+  std::printf("  %-17s %9s %9s %10s %13s %16s\n", "", "chatter", "peak", ra.c_str(), "R_a, last s", "metal removed");
   for (const ComparedRun& run : runs) {
     const HilScore& score = run.score;
     std::printf("  %-17s %7.2f s %6.0f µm %7.2f µm %10.2f µm %9.0f mm³/min%s\n", run.name.c_str(), score.chatter_s,
-                score.peak_displacement_um, score.ra_um.value_or(kNaN), 1e6 * run.ra_at_end,
+                score.peak_displacement_um, score.roughness ? 1e6 * score.roughness->ra : kNaN, 1e6 * run.ra_at_end,
                 score.removed_mm3_per_min.value_or(0.0), score.stopped ? ", stopped on request" : "");
   }
 }

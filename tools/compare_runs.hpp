@@ -20,8 +20,8 @@ struct ComparedRun {
   std::unique_ptr<VirtualMachine> machine;
   Heard heard;
   HilScore score;
-  std::vector<double> wall_time, wall_ra;  // s, m: of each 0.8 mm of the wall, when it was cut
-  double ra_at_end = kNaN;                 // m, mean over the last second at the full depth
+  std::vector<double> surface_time;  // s: when the score's sampling lengths were cut, the first ones of them
+  double ra_at_end = kNaN;           // m, mean over the last second at the full depth
 };
 
 // The largest depth that the lobes call sound, one tenth below the limit, at every speed, feed direction and posture

@@ -7,14 +7,12 @@
 #include <sstream>
 
 #include "drivers/files/csv.hpp"
+#include "tools/as_given.hpp"
 
 namespace stillcut {
 namespace {
 
-// To a millionth, as users gave it.
-double to_micro(double value) { return std::round(value * 1e6) / 1e6; }
-
-std::string number_text(double value) { return csv_number(to_micro(value)); }
+std::string number_text(double value) { return csv_number(as_given(value)); }
 
 std::string turn_text(double angle) { return number_text(rad_to_deg(angle)) + "°"; }
 
@@ -33,7 +31,7 @@ std::string gain_text(double depth, double from) {
 }
 
 nlohmann::ordered_json a_abs_json(double depth) {
-  if (std::isfinite(depth)) return to_micro(1e3 * depth);
+  if (std::isfinite(depth)) return as_given(1e3 * depth);
   return csv_number(depth);
 }
 
@@ -44,10 +42,10 @@ nlohmann::ordered_json combination_json(const DirectionsResult& result, const Po
     return absolute_limit(curve.limits) == limit(*posture);
   });
   return {{"posture", result.tasks[posture->task]},
-          {"redundancy_deg", to_micro(rad_to_deg(posture->variation.redundancy))},
-          {"placement_x_mm", to_micro(1e3 * posture->variation.x)},
-          {"placement_y_mm", to_micro(1e3 * posture->variation.y)},
-          {"feed_direction_deg", to_micro(rad_to_deg(at->direction))},
+          {"redundancy_deg", as_given(rad_to_deg(posture->variation.redundancy))},
+          {"placement_x_mm", as_given(1e3 * posture->variation.x)},
+          {"placement_y_mm", as_given(1e3 * posture->variation.y)},
+          {"feed_direction_deg", as_given(rad_to_deg(at->direction))},
           {"a_abs_mm", a_abs_json(limit(*posture))}};
 }
 
@@ -124,8 +122,8 @@ nlohmann::ordered_json choice_json(const DirectionsResult& result) {
       {"best_placement", nullptr}};
   const std::vector<PlacementLimit> placements = placement_limits(result);
   if (const PlacementLimit* best = best_placement(placements); best != nullptr) {
-    json["best_placement"] = {{"placement_x_mm", to_micro(1e3 * best->x)},
-                              {"placement_y_mm", to_micro(1e3 * best->y)},
+    json["best_placement"] = {{"placement_x_mm", as_given(1e3 * best->x)},
+                              {"placement_y_mm", as_given(1e3 * best->y)},
                               {"a_abs_mm", a_abs_json(best->limit)},
                               {"weakest_posture", result.tasks[best->weakest]}};
   }

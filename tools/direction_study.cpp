@@ -11,13 +11,11 @@
 #include <stdexcept>
 
 #include "drivers/files/csv.hpp"
+#include "tools/as_given.hpp"
 #include "tools/tasks_on_threads.hpp"
 
 namespace stillcut {
 namespace {
-
-// Values as users gave them: without the rounding of the way to SI units and back.
-double as_given(double value) { return std::round(value * 1e6) / 1e6; }
 
 nlohmann::ordered_json depth_json(double depth) {
   if (std::isfinite(depth)) return as_given(depth * 1e3);

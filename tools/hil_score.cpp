@@ -75,7 +75,8 @@ HilScore score_run(const VirtualMachine& machine, std::span<const Event> events)
   constexpr double kMm3 = 1e9, kMinute = 60.0;
   if (machine.cutting_time() > 0.0)
     score.removed_mm3_per_min = kMm3 * kMinute * machine.removed_volume() / machine.cutting_time();
-  if (const double ra = machine.roughness(); std::isfinite(ra)) score.ra_um = 1e6 * ra;
+  score.lengths = machine.surface().lengths();
+  score.roughness = mean_of(score.lengths);
   return score;
 }
 

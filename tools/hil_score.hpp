@@ -21,7 +21,8 @@ struct HilScore {
   int false_alarms = 0;                  // onsets at no spell
   int corrections = 0;                   // target speeds asked for
   double peak_displacement_um = 0.0;
-  std::optional<double> ra_um;                // of the wall; empty: none was cut
+  std::vector<MilledLength> lengths;          // of the wall or floor
+  std::optional<ProfileRoughness> roughness;  // m, their mean; empty: none was cut
   std::optional<double> removed_mm3_per_min;  // while the tool was in the part; empty: it never was
   bool stopped = false;                       // a stop request was followed
 };

@@ -8,15 +8,11 @@
 #include <tuple>
 
 #include "drivers/files/csv.hpp"
+#include "tools/as_given.hpp"
 #include "tools/lobe_study.hpp"
 
 namespace stillcut {
 namespace {
-
-// Values as users gave them: without the rounding of the way to SI units and back.
-double clean(double value) { return std::round(value * 1e6) / 1e6; }
-double clean_rpm(double speed) { return clean(rad_s_to_rpm(speed)); }
-double clean_deg(double angle) { return clean(rad_to_deg(angle)); }
 
 // The depth as JSON can hold it: a number, or "inf" and "nan" as in the CSV.
 nlohmann::ordered_json json_depth(double depth) {
@@ -45,7 +41,7 @@ nlohmann::ordered_json curve_json(const LobeStudy& study, const LobeCurve& curve
     const DepthLimit& limit = curve.limits[i];
     constexpr const char* kKinds[] = {"hopf", "flip", "fold"};
     const char* kind = kKinds[static_cast<int>(limit.instability)];
-    points.push_back({{"spindle_speed_rpm", clean_rpm(study.question.speeds[i])},
+    points.push_back({{"spindle_speed_rpm", as_given_rpm(study.question.speeds[i])},
                       {"a_lim_mm", json_depth(limit.depth)},
                       {"chatter_frequency_hz", json_or_null(limit.chatter_frequency / kTwoPi)},
                       {"instability", std::isfinite(limit.depth) ? nlohmann::json(kind) : nullptr}});
@@ -58,15 +54,15 @@ nlohmann::ordered_json curve_json(const LobeStudy& study, const LobeCurve& curve
   const nlohmann::json fitted = predicted.fitted_from > 0 ? nlohmann::json(predicted.fitted_from) : nullptr;
   const bool floquet = settings.method == LobeMethod::floquet;
   nlohmann::ordered_json coupling = coupling_json(curve.coupling);
-  coupling["below_hz"] = clean(study.coupling_below / kTwoPi);
+  coupling["below_hz"] = as_given(study.coupling_below / kTwoPi);
   coupling["undamped"] = curve.undamped_coupling ? coupling_json(*curve.undamped_coupling) : nullptr;
   nlohmann::ordered_json object{{"posture", predicted.posture.id},
                                 {"nearest_posture", predicted.nearest},
                                 {"outside_map", predicted.outside},
                                 {"modes_fitted_from", fitted},
                                 {"method", floquet ? "sdm" : "zoa"},
-                                {"feed_direction_deg", clean_deg(curve.cut.feed_direction)},
-                                {"max_depth_mm", clean(settings.max_depth * 1e3)},
+                                {"feed_direction_deg", as_given_deg(curve.cut.feed_direction)},
+                                {"max_depth_mm", as_given(settings.max_depth * 1e3)},
                                 {"relative_error_estimate", floquet ? nlohmann::json(error) : nullptr},
                                 {"mode_coupling", coupling},
                                 {"modes", modes},
@@ -135,10 +131,10 @@ void write_lobes_csv(const LobeStudy& study, std::ostream& out) {
     for (std::size_t i = 0; i < curve.limits.size(); ++i) {
       std::vector<std::string> fields;
       if (several) {
-        fields = {csv_text(curve.predicted.posture.id), csv_number(clean_deg(curve.cut.feed_direction))};
+        fields = {csv_text(curve.predicted.posture.id), csv_number(as_given_deg(curve.cut.feed_direction))};
       }
       const DepthLimit& limit = curve.limits[i];
-      fields.push_back(csv_number(clean_rpm(study.question.speeds[i])));
+      fields.push_back(csv_number(as_given_rpm(study.question.speeds[i])));
       fields.push_back(csv_number(limit.depth * 1e3));
       fields.push_back(csv_number_or_empty(limit.chatter_frequency / kTwoPi));
       if (band) {

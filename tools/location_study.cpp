@@ -102,7 +102,7 @@ void solve_table(const Cell& cell, const Cut& cut, DirectionMethod method,
     if (!questions[i].alternating_directions.empty()) {
       study.directions.clear();
       Cut other = cut;
-      if (cut.milling != Milling::slot) other.milling = cut.milling == Milling::up ? Milling::down : Milling::up;
+      other.milling = opposite(cut.milling);
       limits.alternating = curves_for(tool, material, other, posture.modes, study, questions[i].alternating_directions);
       for (DirectionCurve& curve : limits.alternating) {
         const DirectionCurve& as_set = curve_at(limits.curves, curve.direction);

@@ -43,7 +43,7 @@ struct TableOf {
     }
   }
   // The name and those of its extremes.
-  void add_roughness(const std::array<const char*, 3>& names, double paper_um, double Roughness::*figure) {
+  void add_roughness(const std::array<const char*, 3>& names, double paper_um, double ProfileRoughness::*figure) {
     add(
         names[0], "um", [&](const PassRun& run) { return in_paper(run) ? paper_um : kNaN; },
         [&](const PassRun& run) { return over_slices(run.result.wall).mean.*figure * 1e6; });
@@ -101,9 +101,9 @@ std::vector<PassRow> pass_rows(const std::vector<PassRun>& runs) {
   table.add("tool deviation, largest", "um", printed(10.0), of(&HuynhPassResult::deviation_peak, 1e6));
   table.add("vibration along the feed, rms", "m/s^2", {}, of(&HuynhPassResult::feed_vibration, 1.0));
   table.add("vibration across the feed, rms", "m/s^2", {}, of(&HuynhPassResult::cross_vibration, 1.0));
-  table.add_roughness({"wall Ra", "wall Ra, lowest slice", "wall Ra, highest slice"}, 0.32, &Roughness::ra);
-  table.add_roughness({"wall Rq", "wall Rq, lowest slice", "wall Rq, highest slice"}, 0.39, &Roughness::rq);
-  table.add_roughness({"wall Rt", "wall Rt, lowest slice", "wall Rt, highest slice"}, 1.98, &Roughness::rt);
+  table.add_roughness({"wall Ra", "wall Ra, lowest slice", "wall Ra, highest slice"}, 0.32, &ProfileRoughness::ra);
+  table.add_roughness({"wall Rq", "wall Rq, lowest slice", "wall Rq, highest slice"}, 0.39, &ProfileRoughness::rq);
+  table.add_roughness({"wall Rt", "wall Rt, lowest slice", "wall Rt, highest slice"}, 1.98, &ProfileRoughness::rt);
   if (!runs.empty() && runs.front().depths) {
     table.add("depth that turns unstable, by lobes", "mm", {},
               [](const PassRun& run) { return run.depths->by_lobes * 1e3; });

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "drivers/files/csv.hpp"
+#include "tools/as_given.hpp"
 #include "tools/pattern_study.hpp"
 
 namespace stillcut {
@@ -14,13 +15,8 @@ namespace {
 
 constexpr double kCm3PerMin = 1e6 * 60.0;  // of m^3/s
 
-double to_six_digits(double value) { return std::round(value * 1e6) / 1e6; }
-double pattern_mm(double metres) { return to_six_digits(metres * 1e3); }
-double pattern_deg(double angle) { return to_six_digits(rad_to_deg(angle)); }
-double pattern_rpm(double speed) { return to_six_digits(rad_s_to_rpm(speed)); }
-
 nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(to_six_digits(value)) : nullptr;
+  return std::isfinite(value) ? nlohmann::ordered_json(as_given(value)) : nullptr;
 }
 
 std::size_t locations_of(const RatedPattern& pattern) {
@@ -34,18 +30,18 @@ nlohmann::ordered_json pattern_json(const RatedPattern& pattern) {
   return {{"name", pattern.name},
           {"asi_percent", number_or_null(100.0 * rating.asi)},
           {"msi_percent", number_or_null(100.0 * rating.msi)},
-          {"min_a_abs_mm", pattern_mm(rating.min_absolute)},
-          {"max_a_abs_mm", pattern_mm(rating.max_absolute)},
-          {"pocket_rpm", pattern_rpm(rating.common.speed)},
-          {"a_pocket_mm", pattern_mm(rating.common.depth)},
-          {"removal_rate_cm3_per_min", to_six_digits(rating.removal_rate * kCm3PerMin)},
+          {"min_a_abs_mm", as_given_mm(rating.min_absolute)},
+          {"max_a_abs_mm", as_given_mm(rating.max_absolute)},
+          {"pocket_rpm", as_given_rpm(rating.common.speed)},
+          {"a_pocket_mm", as_given_mm(rating.common.depth)},
+          {"removal_rate_cm3_per_min", as_given(rating.removal_rate * kCm3PerMin)},
           {"time_s_per_mm", number_or_null(rating.time_per_depth * 1e-3)},
-          {"cutting_length_mm", pattern_mm(pattern.on.cutting_length)},
+          {"cutting_length_mm", as_given_mm(pattern.on.cutting_length)},
           {"locations", locations_of(pattern)}};
 }
 
 nlohmann::ordered_json pocket_json(const Pocket& pocket) {
-  return {{"pocket_rpm", pattern_rpm(pocket.speed)}, {"a_pocket_mm", pattern_mm(pocket.depth)}};
+  return {{"pocket_rpm", as_given_rpm(pocket.speed)}, {"a_pocket_mm", as_given_mm(pocket.depth)}};
 }
 
 nlohmann::ordered_json location_json(const PatternStudy& study, std::size_t i) {
@@ -53,25 +49,25 @@ nlohmann::ordered_json location_json(const PatternStudy& study, std::size_t i) {
   const LocationLimits& location = study.table.locations[i];
   nlohmann::ordered_json near = nlohmann::json::array();
   for (std::size_t d = 0; d < choice.near.size(); ++d)
-    if (choice.near[d]) near.push_back(pattern_deg(study.table.directions[d]));
-  return {
-      {"posture", location.posture},
-      {"x_mm", pattern_mm(location.place.x())},
-      {"y_mm", pattern_mm(location.place.y())},
-      {"best_direction_deg", pattern_deg(choice.best)},
-      {"near_optimal_deg", near},
-      {"outlier", choice.outlier},
-      {"chosen_direction_deg", pattern_deg(choice.chosen)},
-      {"a_abs_mm", pattern_mm(bounded_absolute_limit(curve_at(location.curves, choice.chosen), study.table.max_depth))},
-      {"group", choice.group + 1},
-      {"common_pocket_direction_deg", pattern_deg(study.global.directions[i])}};
+    if (choice.near[d]) near.push_back(as_given_deg(study.table.directions[d]));
+  return {{"posture", location.posture},
+          {"x_mm", as_given_mm(location.place.x())},
+          {"y_mm", as_given_mm(location.place.y())},
+          {"best_direction_deg", as_given_deg(choice.best)},
+          {"near_optimal_deg", near},
+          {"outlier", choice.outlier},
+          {"chosen_direction_deg", as_given_deg(choice.chosen)},
+          {"a_abs_mm",
+           as_given_mm(bounded_absolute_limit(curve_at(location.curves, choice.chosen), study.table.max_depth))},
+          {"group", choice.group + 1},
+          {"common_pocket_direction_deg", as_given_deg(study.global.directions[i])}};
 }
 
 nlohmann::ordered_json plan_json(const PatternStudy& study) {
   nlohmann::ordered_json result = pattern_json(study.optimized);
   result["made_of"] = study.made_of;
   result["objective"] = study.question.plan.objective == PlanObjective::time ? "time" : "asi";
-  result["axial_depth_mm"] = pattern_mm(study.plan.axial_depth);
+  result["axial_depth_mm"] = as_given_mm(study.plan.axial_depth);
   const auto border = [](double metres) { return number_or_null(metres * 1e3); };
   nlohmann::ordered_json patches = nlohmann::json::array();
   for (const PlannedPatch& patch : study.plan.patches) {
@@ -79,9 +75,9 @@ nlohmann::ordered_json plan_json(const PatternStudy& study) {
     for (const std::size_t i : patch.locations) postures.push_back(study.table.locations[i].posture);
     patches.push_back({{"x_mm", {border(patch.x_begin), border(patch.x_end)}},
                        {"y_mm", {border(patch.y_begin), border(patch.y_end)}},
-                       {"feed_direction_deg", pattern_deg(patch.direction)},
-                       {"spindle_speed_rpm", pattern_rpm(patch.spindle_speed)},
-                       {"a_lim_mm", pattern_mm(patch.depth_limit)},
+                       {"feed_direction_deg", as_given_deg(patch.direction)},
+                       {"spindle_speed_rpm", as_given_rpm(patch.spindle_speed)},
+                       {"a_lim_mm", as_given_mm(patch.depth_limit)},
                        {"postures", postures}});
   }
   result["patches"] = patches;
@@ -108,7 +104,7 @@ std::string row_text(const RatedPattern& pattern) {
          fixed(rating.removal_rate * kCm3PerMin, 2, 10) + fixed(rating.time_per_depth * 1e-3 / 60.0, 1, 10) + "\n";
 }
 
-std::string degrees(double direction) { return csv_number(pattern_deg(direction)) + "°"; }
+std::string degrees(double direction) { return csv_number(as_given_deg(direction)) + "°"; }
 
 std::string pocket_text(const Pocket& pocket) {
   return fixed(pocket.depth * 1e3, 3, 0) + " mm at " + fixed(rad_s_to_rpm(pocket.speed), 0, 0) + " rpm";
@@ -125,7 +121,7 @@ void write_patterns_csv(const PatternStudy& study, std::ostream& out) {
     write_csv_row(
         out, std::vector<std::string>{csv_text(pattern.name), number(100.0 * rating.asi), number(100.0 * rating.msi),
                                       number(rating.min_absolute * 1e3), number(rating.max_absolute * 1e3),
-                                      number(pattern_rpm(rating.common.speed)), number(rating.common.depth * 1e3),
+                                      number(as_given_rpm(rating.common.speed)), number(rating.common.depth * 1e3),
                                       number(rating.removal_rate * kCm3PerMin), number(rating.time_per_depth * 1e-3),
                                       number(pattern.on.cutting_length * 1e3)});
   }
@@ -139,14 +135,14 @@ nlohmann::ordered_json patterns_json(const PatternStudy& study) {
   for (const DirectionGroup& group : study.field.groups) {
     nlohmann::ordered_json postures = nlohmann::json::array();
     for (const std::size_t i : group.locations) postures.push_back(study.table.locations[i].posture);
-    groups.push_back({{"feed_direction_deg", pattern_deg(group.direction)}, {"postures", postures}});
+    groups.push_back({{"feed_direction_deg", as_given_deg(group.direction)}, {"postures", postures}});
   }
   nlohmann::ordered_json result{{"patterns", patterns},
                                 {"locations", locations},
                                 {"groups", groups},
                                 {"local_choice", pocket_json(study.local_pocket)},
                                 {"global_choice", pocket_json(study.global.common)},
-                                {"max_depth_mm", pattern_mm(study.table.max_depth)}};
+                                {"max_depth_mm", as_given_mm(study.table.max_depth)}};
   if (!study.optimized.path.moves.empty()) result["optimized"] = plan_json(study);
   return result;
 }
@@ -172,7 +168,7 @@ void print_patterns(const PatternStudy& study, std::ostream& out) {
   out << "Optimized: " << study.made_of << "\n" << row_text(study.optimized);
   for (const PlannedPatch& patch : study.plan.patches) {
     const auto border = [](double metres) {
-      return std::isfinite(metres) ? csv_number(pattern_mm(metres)) : std::string("border");
+      return std::isfinite(metres) ? csv_number(as_given_mm(metres)) : std::string("border");
     };
     out << "    X " << border(patch.x_begin) << " to " << border(patch.x_end) << ", Y " << border(patch.y_begin)
         << " to " << border(patch.y_end) << ": " << degrees(patch.direction) << " at "
@@ -186,9 +182,9 @@ void write_feed_map(const PatternStudy& study, std::ostream& out) {
   const auto row = [&](std::size_t i, double direction, double speed, double depth) {
     const LocationLimits& location = study.table.locations[i];
     write_csv_row(
-        out, std::vector<std::string>{csv_number(pattern_mm(location.place.x())),
-                                      csv_number(pattern_mm(location.place.y())), csv_number(pattern_deg(direction)),
-                                      csv_number(pattern_rpm(speed)), csv_number(depth * 1e3)});
+        out, std::vector<std::string>{csv_number(as_given_mm(location.place.x())),
+                                      csv_number(as_given_mm(location.place.y())), csv_number(as_given_deg(direction)),
+                                      csv_number(as_given_rpm(speed)), csv_number(depth * 1e3)});
   };
   std::set<std::size_t> written;
   if (!study.plan.patches.empty()) {

@@ -4,18 +4,18 @@
 #include <cmath>
 #include <cstdio>
 
-#include "models/wall_profile.hpp"
-#include "models/wall_roughness.hpp"
+#include "models/surface_form.hpp"
+#include "models/surface_roughness.hpp"
 #include "tools/compare_runs.hpp"
 
 namespace stillcut {
 namespace {
 
 constexpr std::array<plot::Color, 3> kRunColor{plot::kVermilion, plot::kBlue, plot::kGreen};
-constexpr std::size_t kShownMs = 5;         // one point of a line
-constexpr double kShownWall = 2.4e-3;       // m, three sampling lengths
-constexpr double kBeforeExitWall = 1.5e-3;  // m: nothing of the exit yet
-constexpr double kWallSpacing = 4e-6;       // m
+constexpr std::size_t kShownMs = 5;        // one point of a line
+constexpr double kShownLength = 2.4e-3;    // m, three sampling lengths
+constexpr double kBeforeExitWay = 1.5e-3;  // m: nothing of the exit yet
+constexpr double kShownSpacing = 4e-6;     // m
 constexpr double kMm3PerMinute = 1e9 * 60.0;
 
 plot::Line run_line(const std::vector<ComparedRun>& runs, std::size_t r, double width) {
@@ -75,27 +75,35 @@ plot::Panel removal_panel(const std::vector<ComparedRun>& runs) {
   return panel;
 }
 
+std::string surface_name(const std::vector<ComparedRun>& runs) { return runs.front().machine->surface().name(); }
+
+double ra_um(const ComparedRun& run) { return run.score.roughness ? 1e6 * run.score.roughness->ra : kNaN; }
+
 plot::Panel roughness_panel(const std::vector<ComparedRun>& runs) {
   plot::Panel panel;
-  panel.title = "Roughness of the wall, of each 0.8 mm as it was cut";
+  panel.title = "Roughness of the " + surface_name(runs) + ", of each 0.8 mm as it was cut";
   panel.y.label = "R_a, µm";
   panel.y.min = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     plot::Line line = run_line(runs, r, 1.4);
-    line.x = runs[r].wall_time;
-    for (const double ra : runs[r].wall_ra) line.y.push_back(1e6 * ra);
-    line.label = with_figures(runs[r], ": %.2f µm on average", runs[r].score.ra_um.value_or(kNaN));
+    line.x = runs[r].surface_time;
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      const auto& roughness = runs[r].score.lengths[i].roughness;
+      line.y.push_back(roughness ? 1e6 * roughness->ra : kNaN);
+    }
+    line.label = with_figures(runs[r], ": %.2f µm on average", ra_um(runs[r]));
     panel.lines.push_back(std::move(line));
   }
   return panel;
 }
 
-// A stretch of wall that was cut at the full depth, towards its end, less its straight line; one above the other.
-plot::Panel profile_panel(const Cell& cell, const std::vector<ComparedRun>& runs) {
+// A stretch that was cut at the full depth, towards its end, less its straight line; one above the other.
+plot::Panel profile_panel(const std::vector<ComparedRun>& runs) {
   plot::Panel panel;
-  panel.title = "The last of the wall at full depth, as a stylus would draw it (shifted one above the other)";
+  panel.title = "The last of the " + surface_name(runs) +
+                " at full depth, as a stylus would draw it (shifted one above the other)";
   panel.y.label = "µm";
-  panel.x = plot::Axis{.label = "along the wall [mm]"};
+  panel.x = plot::Axis{.label = "along the feed [mm]"};
   panel.height = 1.2;
   double offset = 0.0;
   for (std::size_t r = runs.size(); r-- > 0;) {
@@ -106,19 +114,18 @@ plot::Panel profile_panel(const Cell& cell, const std::vector<ComparedRun>& runs
       way += moments[i].feed_rate * (moments[i].time - moments[i - 1].time);
       if (moments[i].axial_depth >= 0.95 * deepest) until = way;
     }
-    const auto count = static_cast<std::size_t>(kShownWall / kWallSpacing);
-    const std::vector<double> heights = wall_heights(runs[r].machine->wall(), 0.5 * cell.tool->diameter,
-                                                     until - kShownWall - kBeforeExitWall, kWallSpacing, count);
+    const auto count = static_cast<std::size_t>(kShownLength / kShownSpacing);
+    std::vector<double> heights =
+        runs[r].machine->surface().heights(until - kShownLength - kBeforeExitWay, kShownSpacing, count);
     if (!std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); })) continue;
-    const Roughness form = roughness(heights, kWallSpacing);
-    const double middle = 0.5 * static_cast<double>(count - 1);
+    const ProfileRoughness roughness = profile_roughness(heights, kShownSpacing);
     plot::Line line = run_line(runs, r, 1.3);
-    line.label = with_figures(runs[r], ": R_a %.2f µm here", 1e6 * form.ra);
+    line.label = with_figures(runs[r], ": R_a %.2f µm here", 1e6 * roughness.ra);
+    remove_form(heights, SurfaceForm::linear);
     double lowest = 0.0, highest = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
-      const double x = (static_cast<double>(i) - middle) * kWallSpacing;
-      line.x.push_back(1e3 * kWallSpacing * static_cast<double>(i));
-      line.y.push_back(-1e6 * (heights[i] - form.mean - form.slope * x));  // material is up
+      line.x.push_back(1e3 * kShownSpacing * static_cast<double>(i));
+      line.y.push_back(-1e6 * heights[i]);  // material is up
       lowest = std::min(lowest, line.y.back());
       highest = std::max(highest, line.y.back());
     }
@@ -151,8 +158,7 @@ plot::Figure comparison_figure(const std::string& title, const Cell& cell, const
   });
   for (plot::Panel* panel : {&depth, &speed})
     for (plot::Line& line : panel->lines) line.label.clear();
-  figure.panels = {
-      depth, chatter_panel(runs), speed, removal_panel(runs), roughness_panel(runs), profile_panel(cell, runs)};
+  figure.panels = {depth, chatter_panel(runs), speed, removal_panel(runs), roughness_panel(runs), profile_panel(runs)};
   figure.height = 1500;
   return figure;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kShownEvery = 4;  // points of a profile, 4 um: a picture's own
 
 std::string wall_title(const PassRun& run) {
-  const Roughness mean = over_slices(run.result.wall).mean;
+  const ProfileRoughness mean = over_slices(run.result.wall).mean;
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "%s; mean of %zu slices: Ra %.2f, Rq %.2f, Rt %.2f µm",
                 pass_name(run.pass).c_str(), run.result.wall.size(), mean.ra * 1e6, mean.rq * 1e6, mean.rt * 1e6);

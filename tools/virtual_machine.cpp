@@ -86,6 +86,11 @@ MillingSimulation make_milling(const Cell& cell, MillingSetup setup, double rate
   }
 }
 
+Cut cut_at_start(Cut cut, const MillingConditions& start) {
+  cut.feed_direction = start.feed_direction;
+  return cut;
+}
+
 void check_nan(const Scenario& scenario, const CanEncoder& encoder) {
   for (const SensorFault& fault : scenario.sensor_faults)
     if (fault.kind == SensorFaultKind::nan && !encoder.can_send_nan())
@@ -115,7 +120,7 @@ VirtualMachine::VirtualMachine(const Cell& cell, const Scenario& scenario, std::
       controller_{scenario.controller, require(cell, cell.spindle, "spindle"), milling_.state().spindle_speed,
                   origin_ns},
       random_{scenario.seed},
-      wall_{tool_, milling_.conditions().feed_direction} {
+      surface_{tool_, cut_at_start(cut_, milling_.conditions()), 1.0 / sample_rate_hz_} {
   check_nan(scenario_, encoder_);
   std::sort(scenario_.knocks.begin(), scenario_.knocks.end(),
             [](const Knock& a, const Knock& b) { return a.time < b.time; });
@@ -231,7 +236,7 @@ void VirtualMachine::set_sensor_faults(double time) {
 void VirtualMachine::record(const RobotState& program, bool disturbed) {
   const MillingState& s = milling_.state();
   truth_.add(s.time, s.spindle_angle, s.displacement, disturbed);
-  wall_.add(s, milling_.conditions(), 1.0 / sample_rate_hz_);
+  surface_.add(s, milling_.conditions());
   vibration_.push_back(static_cast<float>(s.acceleration.x()));
   const double displacement = s.displacement.norm();
   peak_displacement_ = std::max(peak_displacement_, displacement);

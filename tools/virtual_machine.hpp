@@ -15,8 +15,8 @@
 #include "models/milling_simulation.hpp"
 #include "tools/can_encoder.hpp"
 #include "tools/cell_posture.hpp"
+#include "tools/surface_recorder.hpp"
 #include "tools/virtual_controller.hpp"
-#include "tools/wall_recorder.hpp"
 
 namespace stillcut {
 
@@ -58,8 +58,7 @@ class VirtualMachine {
   [[nodiscard]] const std::vector<float>& vibration() const { return vibration_; }  // m/s^2, x, one a sample
   [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
   [[nodiscard]] double peak_displacement() const { return peak_displacement_; }  // m
-  [[nodiscard]] double roughness() const { return wall_.roughness(); }           // m, of the wall; NaN: none
-  [[nodiscard]] const std::vector<ToothPass>& wall() const { return wall_.passes(); }
+  [[nodiscard]] const SurfaceRecorder& surface() const { return surface_; }
   [[nodiscard]] double removed_volume() const { return removed_; }     // m^3
   [[nodiscard]] double cutting_time() const { return cutting_time_; }  // s with the tool in the part
   [[nodiscard]] std::int64_t frames_sent() const { return frames_sent_; }
@@ -98,7 +97,7 @@ class VirtualMachine {
   std::int64_t samples_ = 0, frames_sent_ = 0, frames_lost_ = 0;
   double peak_displacement_ = 0.0;             // m
   double removed_ = 0.0, cutting_time_ = 0.0;  // m^3, s
-  WallRecorder wall_;
+  SurfaceRecorder surface_;
   ChatterTruth truth_;
   std::vector<MachineMoment> moments_;
   std::vector<float> vibration_;

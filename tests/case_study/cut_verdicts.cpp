@@ -19,11 +19,7 @@ struct AtDepth {
 
 AtDepth by_paper_lobes(const LinearCut& linear, std::span<const Mode> modes, const Cut& cut) {
   const auto projected = [&](double frequency) {
-    const PaperReceptance receptances = paper_projection(receptance(modes, frequency), cut.feed_direction);
-    Eigen::Matrix2cd feed_plane = Eigen::Matrix2cd::Zero();
-    feed_plane(0, 0) = receptances.feed;
-    feed_plane(1, 1) = receptances.cross_feed;
-    return feed_plane;
+    return paper_feed_plane(receptance(modes, frequency), cut.feed_direction);
   };
   constexpr double kDeepest = 0.02;  // m
   const std::array<double, 1> speeds{cut.spindle_speed};

@@ -70,12 +70,12 @@ TEST(HuynhPass, AHundredStepsATurnAreSeenInTheWall) {
   HuynhPass pass = short_pass(PassWay::longitudinal, Milling::down);
   pass.wall_length = 0.8e-3;
   pass.cutting_time = 0.4;
-  const Roughness coarse = over_slices(run_huynh_pass(pass).wall).mean;
+  const ProfileRoughness coarse = over_slices(run_huynh_pass(pass).wall).mean;
   EXPECT_NEAR(coarse.rt, 1.98e-6, 0.3 * 1.98e-6);
   EXPECT_GT(coarse.ra, 0.2e-6);
   EXPECT_LT(coarse.ra, 0.6e-6);
   pass.chords = 16;
-  const Roughness fine = over_slices(run_huynh_pass(pass).wall).mean;
+  const ProfileRoughness fine = over_slices(run_huynh_pass(pass).wall).mean;
   EXPECT_LT(fine.ra, 0.4 * coarse.ra);
   EXPECT_GT(fine.rt, 0.2e-6);  // cusps of the feed, f^2/8R = 0.22 um
 }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "dsp/numbers.hpp"
-#include "models/wall_profile.hpp"
 #include "tests/models/surface_maps.hpp"
 
 namespace stillcut {
@@ -175,15 +174,6 @@ TEST(MeanRoughness, LeavesOutAndCountsProfilesThatAreHardlyKnown) {
   EXPECT_EQ(across.mean.unknown, 16U);
   map.at(3, 15) = 0.0;  // half is enough
   EXPECT_EQ(mean_roughness(map, ProfileDirection::across).left_out, 0U);
-}
-
-TEST(Roughness, OfTheWallIsTheSameCode) {
-  const std::vector<double> profile = surface_profile(noise_map(100, 1, 1e-6, 7), ProfileDirection::along, 0);
-  const ProfileRoughness r = profile_roughness(profile, 4e-6);
-  const Roughness wall = roughness(profile, 4e-6);
-  EXPECT_EQ(wall.ra, r.ra);
-  EXPECT_EQ(wall.rq, r.rq);
-  EXPECT_EQ(wall.rt, r.rt);
 }
 
 TEST(Roughness, IsRefusedWhereTooLittleIsKnown) {

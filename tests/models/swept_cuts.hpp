@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "models/surface_roughness.hpp"
 #include "models/surface_sweep.hpp"
-#include "models/wall_profile.hpp"
 
 namespace stillcut::test {
 
@@ -49,16 +49,8 @@ inline std::vector<double> row_across(const HeightMap& map, std::size_t i) {
   return row;
 }
 
-inline double ra_along(const HeightMap& map) {
-  double sum = 0.0;
-  for (std::size_t j = 0; j < map.across; ++j) sum += roughness(row_along(map, j), map.spacing_along).ra;
-  return sum / static_cast<double>(map.across);
-}
+inline double ra_along(const HeightMap& map) { return mean_roughness(map, ProfileDirection::along).mean.ra; }
 
-inline double ra_across(const HeightMap& map) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < map.along; ++i) sum += roughness(row_across(map, i), map.spacing_across).ra;
-  return sum / static_cast<double>(map.along);
-}
+inline double ra_across(const HeightMap& map) { return mean_roughness(map, ProfileDirection::across).mean.ra; }
 
 }  // namespace stillcut::test

@@ -55,7 +55,9 @@ TEST(CompareRuns, MillAtNineTenthsOfTheLimitAndKeepShallowerPartsOfTheProgram) {
 TEST(CompareRuns, LeaveOutTheShallowCutWhereTheProgramIsSound) {
   const Compared compared{"stable-cut"};
   ASSERT_EQ(compared.runs.size(), 2U);
-  EXPECT_EQ(compared.runs[0].score.ra_um, compared.runs[1].score.ra_um);  // nothing was corrected
+  const auto &plain = compared.runs[0].score.roughness, &corrected = compared.runs[1].score.roughness;
+  ASSERT_TRUE(plain && corrected);
+  EXPECT_EQ(plain->ra, corrected->ra);  // nothing was corrected
 }
 
 TEST(CompareRuns, FollowTheWallAsItWasCut) {
@@ -63,13 +65,14 @@ TEST(CompareRuns, FollowTheWallAsItWasCut) {
   const ComparedRun& run = compared.runs[0];
   double sum = 0.0;
   int count = 0;
-  for (std::size_t i = 0; i < run.wall_ra.size(); ++i) {
-    EXPECT_GE(run.wall_time[i], i > 0 ? run.wall_time[i - 1] : 0.0);
-    if (std::isnan(run.wall_ra[i])) continue;
-    sum += run.wall_ra[i];
+  for (std::size_t i = 0; i < run.surface_time.size(); ++i) {
+    EXPECT_GE(run.surface_time[i], i > 0 ? run.surface_time[i - 1] : 0.0);
+    if (!run.score.lengths[i].roughness) continue;
+    sum += run.score.lengths[i].roughness->ra;
     ++count;
   }
-  EXPECT_NEAR(1e6 * sum / count, run.score.ra_um.value_or(0.0), 0.02 * run.score.ra_um.value_or(0.0));
+  ASSERT_TRUE(run.score.roughness);
+  EXPECT_NEAR(sum / count, run.score.roughness->ra, 0.02 * run.score.roughness->ra);
 }
 
 TEST(CompareRuns, AreToldAsAListAndDrawn) {

@@ -113,7 +113,7 @@ TEST_P(RepeatableScenario, RepeatsToTheBit) {
   for (std::size_t i = 0; i < a.heard.trace.size(); ++i)
     EXPECT_EQ(0, std::memcmp(&a.heard.trace[i].indicator, &b.heard.trace[i].indicator, sizeof(double))) << i;
   EXPECT_EQ(a.score.peak_displacement_um, b.score.peak_displacement_um);
-  EXPECT_EQ(a.score.ra_um, b.score.ra_um);
+  EXPECT_EQ(a.score.roughness.value_or(ProfileRoughness{}).ra, b.score.roughness.value_or(ProfileRoughness{}).ra);
   EXPECT_EQ(a.final_rpm, b.final_rpm);
 }
 
