@@ -50,13 +50,13 @@ Motion motion_over(const CutTrack& track, double begin, double end) {
   const auto last = static_cast<double>(track.displacement.size() - 1);
   const auto first_sample = static_cast<std::size_t>(std::clamp(std::floor(begin / track.step), 0.0, last));
   const auto last_sample = static_cast<std::size_t>(std::clamp(std::ceil(end / track.step), 0.0, last));
-  std::vector<Eigen::Vector3d> samples;
-  samples.reserve(last_sample - first_sample + 1);
+  const auto from = track.displacement.begin();
+  std::vector<Eigen::Vector3f> samples(from + static_cast<std::ptrdiff_t>(first_sample),
+                                       from + static_cast<std::ptrdiff_t>(last_sample) + 1);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = first_sample; i <= last_sample; ++i)
-    sum += samples.emplace_back(track.displacement[i].cast<double>());
+  for (const Eigen::Vector3f& sample : samples) sum += sample.cast<double>();
   const Eigen::Vector3d mean = sum / static_cast<double>(samples.size());
-  for (Eigen::Vector3d& sample : samples) sample -= mean;
+  for (Eigen::Vector3f& sample : samples) sample = (sample.cast<double>() - mean).cast<float>();
   return {sampled_displacement(track.step * static_cast<double>(first_sample), track.step, std::move(samples)),
           mean.z()};
 }
