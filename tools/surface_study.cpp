@@ -152,10 +152,13 @@ class Sweeper {
     return mean_roughness(map, question_.profile, question_.roughness).mean.ra;
   }
 
+  // The first grid is there to be compared with: the second one is the coarsest that shows everything.
   [[nodiscard]] RefinedSurface refined(const ToolOverSurface& tool) const {
     return refined_surface(tool.motion, cut_, tool.passes,
                            {.along = question_.along,
                             .across = question_.across,
+                            .spacing = 2.0 * coarsest_spacing(cut_),
+                            .allow_coarse = true,
                             .most_points = static_cast<std::size_t>(kMostRefinedPoints),
                             .figure = [this](const HeightMap& map) { return roughness_of(map); },
                             .workers = workers_});
@@ -212,8 +215,7 @@ void sweep_with_and_without(const ToolOverSurface& still, const std::optional<To
   const Sweeper sweeper(study.cut, study.question, watch);
   const ToolOverSurface& tool = vibrates ? *vibrates : still;
   HeightMap map;
-  const GridSize halved{2 * study.cells.along, 2 * study.cells.across};
-  if (!study.question.cells && points_of(halved) <= kMostRefinedPoints) {
+  if (!study.question.cells && points_of(study.cells) <= kMostRefinedPoints) {
     RefinedSurface refined = sweeper.refined(tool);
     map = std::move(refined.map);
     study.cells = cells_of(map);
