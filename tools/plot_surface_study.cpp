@@ -11,7 +11,7 @@
 namespace stillcut {
 namespace {
 
-constexpr int kWidth = 1000;
+constexpr int kStudyWidth = 1000;
 constexpr double kMapRoom = 600.0, kProfileRoom = 130.0, kSpectrumRoom = 170.0, kAround = 76.0;  // px, about
 
 struct Surface {
@@ -28,7 +28,7 @@ plot::Panel map_panel(const Surface& surface) {
   panel.x = plot::Axis{.label = "along the feed [mm]"};
   const double shape = static_cast<double>(surface.map->across) * surface.map->spacing_across /
                        (static_cast<double>(surface.map->along) * surface.map->spacing_along);
-  panel.height = std::clamp(shape * (kWidth - 190.0), 60.0, kMapRoom);
+  panel.height = std::clamp(shape * (kStudyWidth - 190.0), 60.0, kMapRoom);
   return panel;
 }
 
@@ -81,7 +81,7 @@ plot::Figure surface_study_figure(const StudiedSurface& study, const MeasuredSur
     surfaces.push_back({&measured->map, "measured: " + measured->file, plot::kOrange, plot::kGreen});
   plot::Figure figure;
   figure.title = surface_title(study);
-  figure.width = kWidth;
+  figure.width = kStudyWidth;
   for (const Surface& surface : surfaces) figure.panels.push_back(map_panel(surface));
   if (surfaces.size() == 2) share_scale(*figure.panels[0].image, *figure.panels[1].image);
   const auto add = [&](auto panels_of, double room) {

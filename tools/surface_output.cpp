@@ -46,13 +46,13 @@ void each_figure(Each each) {
 }
 
 // NaN and infinite become null.
-nlohmann::ordered_json or_null(double value) {
+nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json figures_json(const SurfaceFigures& figures) {
   nlohmann::ordered_json object;
-  each_figure([&](const FigureName& figure) { object[figure.key] = or_null(figure.unit * figure.of(figures)); });
+  each_figure([&](const FigureName& figure) { object[figure.key] = finite_or_null(figure.unit * figure.of(figures)); });
   return object;
 }
 
@@ -64,7 +64,7 @@ double relative_difference(const FigureName& figure, const StudiedSurface& study
 nlohmann::ordered_json difference_json(const StudiedSurface& study, const MeasuredSurface& measured) {
   nlohmann::ordered_json object;
   each_figure([&](const FigureName& figure) {
-    object[figure.key] = or_null(figure.unit * (figure.of(study.figures) - figure.of(measured.figures)));
+    object[figure.key] = finite_or_null(figure.unit * (figure.of(study.figures) - figure.of(measured.figures)));
   });
   return object;
 }
@@ -102,7 +102,7 @@ std::string head_text(const StudiedSurface& study) {
   text += "\ngrid of " + std::to_string(study.cells.along) + " x " + std::to_string(study.cells.across) + " cells, " +
           spacing_text(question.along / static_cast<double>(study.cells.along),
                        question.across / static_cast<double>(study.cells.across));
-  text += std::isfinite(study.error) ? said("; it changes R_a by some %.1g %%", 100.0 * study.error)
+  text += std::isfinite(study.error) ? said("; R_a within some %.1g %% of a finer one's", 100.0 * study.error)
                                      : std::string("; no other grid to compare R_a with");
   if (question.points)
     text += "\nresampled to " + std::to_string(question.points->along) + " x " +
@@ -138,12 +138,12 @@ nlohmann::ordered_json surface_json(const StudiedSurface& study, const MeasuredS
   nlohmann::ordered_json object = figures_json(study.figures);
   object["profile"] = profile_name(study);
   object["form"] = question.roughness.form == SurfaceForm::linear ? "linear" : "quadratic";
-  object["cutoff_mm"] = or_null(question.roughness.cutoff > 0.0 ? 1e3 * question.roughness.cutoff : NAN);
+  object["cutoff_mm"] = finite_or_null(question.roughness.cutoff > 0.0 ? 1e3 * question.roughness.cutoff : NAN);
   object["size_mm"] = {1e3 * question.along, 1e3 * question.across};
   object["grid"] = {study.cells.along, study.cells.across};
   object["spacing_um"] = {kUm * question.along / static_cast<double>(study.cells.along),
                           kUm * question.across / static_cast<double>(study.cells.across)};
-  object["ra_grid_error_percent"] = or_null(100.0 * study.error);
+  object["ra_grid_error_percent"] = finite_or_null(100.0 * study.error);
   object["resampled"] = nullptr;
   if (question.points) object["resampled"] = {question.points->along, question.points->across};
   object["vibration"] = nullptr;
