@@ -53,48 +53,10 @@ struct ToolOverSurface {
   std::vector<CutterPass> passes;
 };
 
-SurfaceVibration vibration_over(const Cell& cell, const VibrationSetup& setup, std::vector<CutterPass> passes) {
-  try {
-    return vibrating_passes(setup, std::move(passes));
-  } catch (const std::exception& error) {  // a tool that the simulation does not know, a motion that leaves all bounds
-    throw InputError(
-        cell.file.string(), 0,
-        "the vibration cannot be simulated: " + std::string(error.what()) + "; --no-vibration leaves it out");
-  }
-}
-
-// How far the tool vibrates is known only when it has, and so much further must its passes run in and out. They are
-// made with room for what is usual, and anew where that was too little.
-ToolOverSurface vibrating(const Cell& cell, CutterMotion motion, const VibrationSetup& setup,
-                          const SurfaceQuestion& question, StudiedVibration& vibration) {
-  constexpr double kUsual = 50e-6, kMore = 1.5;  // m
-  constexpr int kTries = 4;
-  CutterMotion roomy = motion;
-  roomy.displacement.reach.setConstant(kUsual);
-  for (int i = 0;; ++i) {
-    SurfaceVibration moved =
-        vibration_over(cell, setup, passes_over(roomy, setup.cut, question.along, question.across));
-    const bool fits = (moved.displacement.reach.array() <= roomy.displacement.reach.array()).all();
-    if (!fits && i + 1 < kTries) {
-      roomy.displacement.reach = roomy.displacement.reach.cwiseMax(kMore * moved.displacement.reach);
-      continue;
-    }
-    vibration.mean = moved.mean, vibration.rms = moved.rms, vibration.peak = moved.peak;
-    motion.displacement = std::move(moved.displacement);
-    return {std::move(motion), std::move(moved.passes)};
-  }
-}
-
-ToolOverSurface vibrating_tool(const Cell& cell, const CutterMotion& motion, const SurfaceWatch& watch,
-                               StudiedSurface& study) {
+ToolOverSurface vibrating_tool(const Cell& cell, const SurfaceWatch& watch, StudiedSurface& study) {
   const SurfaceQuestion& question = study.question;
   const PredictedPosture predicted = predicted_posture(cell, read_cell_dynamics(cell), question.posture);
   if (predicted.outside) study.warnings.push_back(outside_map_text(predicted) + "; the vibration is an extrapolation");
-  study.vibration = StudiedVibration{.posture = predicted.posture.id,
-                                     .modes = predicted.posture.modes.size(),
-                                     .mean = Eigen::Vector3d::Zero(),
-                                     .rms = Eigen::Vector3d::Zero(),
-                                     .peak = Eigen::Vector3d::Zero()};
   const VibrationSetup setup{.tool = study.tool,
                              .material = require(cell, cell.material, "material"),
                              .cut = study.cut,
@@ -102,7 +64,19 @@ ToolOverSurface vibrating_tool(const Cell& cell, const CutterMotion& motion, con
                              .force_noise = question.force_noise,
                              .seed = question.seed,
                              .progress = [&](double share) { watch("vibration", share); }};
-  return vibrating(cell, motion, setup, question, *study.vibration);
+  try {
+    VibratingCutter cutter = vibrating_cutter(setup, question.along, question.across);
+    study.vibration = StudiedVibration{.posture = predicted.posture.id,
+                                       .modes = predicted.posture.modes.size(),
+                                       .mean = cutter.vibration.mean,
+                                       .rms = cutter.vibration.rms,
+                                       .peak = cutter.vibration.peak};
+    return {std::move(cutter.motion), std::move(cutter.vibration.passes)};
+  } catch (const std::exception& error) {  // what cannot be simulated, and a motion that leaves all bounds
+    throw InputError(
+        cell.file.string(), 0,
+        "the vibration cannot be simulated: " + std::string(error.what()) + "; --no-vibration leaves it out");
+  }
 }
 
 Workers workers_of(int threads, const SurfaceWatch& watch) {
@@ -274,7 +248,7 @@ StudiedSurface study_surface(const Cell& cell, const SurfaceQuestion& question, 
     study.cells = question.cells.value_or(study.needed);
     check_grid(cell, study);
     std::optional<ToolOverSurface> vibrates;
-    if (question.vibration) vibrates = vibrating_tool(cell, still.motion, watch, study);
+    if (question.vibration) vibrates = vibrating_tool(cell, watch, study);
     sweep_with_and_without(still, vibrates, watch, study);
   } catch (const std::invalid_argument& error) {
     throw said_of_cell(cell, error.what());

@@ -59,8 +59,6 @@ INSTANTIATE_TEST_SUITE_P(
                                      "[tool]\nshape = \"ball\"\ndiameter_mm = 8.0\nteeth = 2\nhelix_deg = 45.0\n"
                                      "runout_mm = 0.02\naxial_runout_mm = 0.005\n",
                                      "", "cell.toml: [tool] is missing", "add this section"},
-                      BadSurfaceCell{"end_mill_that_vibrates", "shape = \"ball\"", "shape = \"end\"",
-                                     "cell.toml: the vibration cannot be simulated: ", "--no-vibration leaves it out"},
                       BadSurfaceCell{"no_such_posture", "posture = \"A\"", "posture = \"Z\"",
                                      "cell.toml: dynamics.posture: ", "not in the map"}),
     [](const auto& test) { return std::string(test.param.name); });
@@ -115,6 +113,19 @@ TEST(SurfaceCommandRefuses, OptionsThatCannotBe) {
   input({"--no-vibration", "--size", "0.1x0.1", "--cutoff", "1", "--json"}, "cell.toml: --cutoff: ", "not be longer");
   input({"--posture", "Z"}, "cell.toml: --posture: ", "not in the map");
   input({"--no-vibration", "--size", "0.1x0.1", "--sdf", "/nowhere/a.sdf", "--json"}, "/nowhere/a.sdf: ", "written");
+}
+
+TEST(SurfaceCommandRefuses, ACutThatIsFarFromStable) {
+  const SurfaceCell cell;
+  cell.make_quick();
+  cell.change("axial_depth_mm = 0.1", "axial_depth_mm = 1.0");
+  (void)cell.write("map/modes.csv",
+                   "posture,mode,frequency_hz,damping_ratio,stiffness_n_per_m,ux,uy,uz\n"
+                   "A,1,620,0.03,1.4e3,1,0,0\nA,2,840,0.03,1.6e3,0,1,0\n"
+                   "B,1,620,0.03,1.4e3,1,0,0\nB,2,840,0.03,1.6e3,0,1,0\n"
+                   "C,1,620,0.03,1.4e3,1,0,0\nC,2,840,0.03,1.6e3,0,1,0\n");
+  expect_surface_refusal(cell.surface({"--size", "0.4x0.4", "--json"}), 3,
+                         "cell.toml: the vibration cannot be simulated: ", "; --no-vibration leaves it out");
 }
 
 // Without vibration the cell need know nothing of the machine; with it, it must.
