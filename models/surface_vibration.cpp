@@ -216,6 +216,7 @@ VibratingCutter vibrating_cutter(const VibrationSetup& setup, double along, doub
       throw std::runtime_error("the tool vibrates by " + std::to_string(std::lround(1e6 * reach.norm())) +
                                " um, farther than its ball reaches; the cut is unstable");
     }
+    result.vibration = {};  // a large surface's samples are not held twice
     result.vibration = vibrating_passes(setup, passes);
     reach = result.vibration.displacement.reach;
     if ((reach.array() <= result.motion.displacement.reach.array()).all()) {
