@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 
 namespace stillcut {
@@ -36,12 +37,15 @@ Displacement sampled_displacement(double first_time, double step, std::vector<Ei
     result.reach = result.reach.cwiseMax(samples[i].cast<double>().cwiseAbs());
     if (i > 0) result.speed = std::max(result.speed, (samples[i] - samples[i - 1]).cast<double>().norm() / step);
   }
-  result.at = [first_time, step, samples = std::move(samples)](double time) -> Eigen::Vector3d {
-    const double position = std::clamp((time - first_time) / step, 0.0, static_cast<double>(samples.size() - 1));
+  // Shared by the copies of a motion, of which every sweep has one: they may be hundreds of megabytes.
+  const auto shared = std::make_shared<const std::vector<Eigen::Vector3f>>(std::move(samples));
+  result.at = [first_time, step, shared](double time) -> Eigen::Vector3d {
+    const std::vector<Eigen::Vector3f>& at = *shared;
+    const double position = std::clamp((time - first_time) / step, 0.0, static_cast<double>(at.size() - 1));
     const auto low = static_cast<std::size_t>(position);
-    const std::size_t high = std::min(low + 1, samples.size() - 1);
-    const Eigen::Vector3d from = samples[low].cast<double>();
-    return from + (position - static_cast<double>(low)) * (samples[high].cast<double>() - from);
+    const std::size_t high = std::min(low + 1, at.size() - 1);
+    const Eigen::Vector3d from = at[low].cast<double>();
+    return from + (position - static_cast<double>(low)) * (at[high].cast<double>() - from);
   };
   return result;
 }

@@ -58,11 +58,24 @@ std::vector<double> summed(const std::vector<double>& values, std::size_t count,
   return sums;
 }
 
-std::vector<double> transposed(const std::vector<double>& values, std::size_t rows, std::size_t columns) {
-  std::vector<double> result(values.size());
-  for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t c = 0; c < columns; ++c) result[c * rows + r] = values[r * columns + c];
-  return result;
+// The sums under both bells of a map's values, in their place: blocks of columns, then of rows turned to columns, so
+// that a large map needs no second one.
+void sum_over_both(std::vector<double>& values, std::size_t along, std::size_t across,
+                   const std::vector<double>& bell_along, const std::vector<double>& bell_across) {
+  constexpr std::size_t kBlock = 64;
+  const auto sum = [&](std::size_t count, std::size_t lines, const std::vector<double>& weights, auto at) {
+    for (std::size_t begin = 0; begin < lines; begin += kBlock) {
+      const std::size_t width = std::min(kBlock, lines - begin);
+      std::vector<double> block(count * width);
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t l = 0; l < width; ++l) block[k * width + l] = values[at(k, begin + l)];
+      const std::vector<double> sums = summed(block, count, width, weights);
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t l = 0; l < width; ++l) values[at(k, begin + l)] = sums[k * width + l];
+    }
+  };
+  sum(across, along, bell_across, [along](std::size_t j, std::size_t i) { return j * along + i; });
+  sum(along, across, bell_along, [along](std::size_t i, std::size_t j) { return j * along + i; });
 }
 
 std::vector<double> mean_under_bell(std::span<const double> heights, const Weighed& sums) {
@@ -86,14 +99,23 @@ HeightMap waviness(const HeightMap& map, double cutoff) {
   require_sound_map(map);
   const std::vector<double> along = bell(map.along, map.spacing_along, cutoff);
   const std::vector<double> across = bell(map.across, map.spacing_across, cutoff);
-  const auto over_both = [&](const std::vector<double>& values) {
-    const std::vector<double> once = summed(values, map.across, map.along, across);
-    const std::vector<double> twice = summed(transposed(once, map.across, map.along), map.along, map.across, along);
-    return transposed(twice, map.along, map.across);
-  };
-  const Weighed known = known_of(map.heights);
   HeightMap result = map;
-  result.heights = mean_under_bell(map.heights, {over_both(known.heights), over_both(known.weight)});
+  std::replace_if(
+      result.heights.begin(), result.heights.end(), [](double height) { return std::isnan(height); }, 0.0);
+  sum_over_both(result.heights, map.along, map.across, along, across);
+  if (known_points(map.heights) == map.heights.size()) {  // the weight is that along times that across
+    const std::vector<double> weight_along = summed(std::vector<double>(map.along, 1.0), map.along, 1, along);
+    const std::vector<double> weight_across = summed(std::vector<double>(map.across, 1.0), map.across, 1, across);
+    for (std::size_t j = 0; j < map.across; ++j)
+      for (std::size_t i = 0; i < map.along; ++i) result.at(i, j) /= weight_along[i] * weight_across[j];
+    return result;
+  }
+  std::vector<double> weight(map.heights.size());
+  std::transform(map.heights.begin(), map.heights.end(), weight.begin(),
+                 [](double height) { return std::isnan(height) ? 0.0 : 1.0; });
+  sum_over_both(weight, map.along, map.across, along, across);
+  for (std::size_t k = 0; k < weight.size(); ++k)
+    result.heights[k] = std::isnan(map.heights[k]) ? kNaN : result.heights[k] / weight[k];
   return result;
 }
 

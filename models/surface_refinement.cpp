@@ -68,7 +68,7 @@ RefinedSurface refined_surface(const CutterMotion& motion, const Cut& cut, std::
     const double points = (setup.along / spacing + 1.0) * (setup.across / spacing + 1.0);
     if (!surface.map.heights.empty() && points > static_cast<double>(setup.most_points)) break;
     HeightMap map = uncut_map(setup.along, setup.across, spacing);
-    const SurfaceSweep sweep(motion, cut, map.spacing_along, map.spacing_across);
+    const SurfaceSweep sweep(motion, cut, map.spacing_along, map.spacing_across, setup.allow_coarse);
     sweep_all(sweep, map, passes, setup.workers);
     const double figure = setup.figure(map), change = std::abs(figure - surface.figure);
     // A flat surface has no roughness to compare with: what rounding leaves of one is below a picometre.

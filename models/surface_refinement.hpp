@@ -18,6 +18,7 @@ using Workers = std::function<void(std::size_t count, const std::function<void(s
 struct RefinementSetup {
   double along = 0.0, across = 0.0;  // m
   double spacing = 0.0;              // m, of the first grid; 0: the coarsest allowed
+  bool allow_coarse = false;         // of the first grids: a coarser one is cheap, and tells how much a finer one gains
   double tolerance = 0.01;           // of the roughness, relative
   std::size_t most_points = 25'000'000;
   std::function<double(const HeightMap&)> figure = arithmetic_deviation;

@@ -15,9 +15,9 @@
 namespace stillcut {
 namespace {
 
-constexpr double kSettled = 3.0;        // time constants of the slowest mode
-constexpr double kLongestRunIn = 0.5;   // s
-constexpr double kSamplesPerMode = 40;  // a period of the highest mode, at least, between which lines are drawn
+constexpr double kTimeConstantsSettled = 3.0;  // time constants of the slowest mode
+constexpr double kLongestRunIn = 0.5;          // s
+constexpr double kSamplesPerMode = 40;         // a period of the highest mode, at least, between which lines are drawn
 constexpr double kSamplesPerTooth = 40;
 constexpr double kRigid = 1e6;  // times as stiff
 constexpr double kTurnsOfMean = 3.0;
@@ -34,7 +34,7 @@ double highest_hz(const std::vector<Mode>& modes) {
 double run_in_time(const std::vector<Mode>& modes) {
   double slowest = std::numeric_limits<double>::infinity();  // 1/s
   for (const Mode& mode : modes) slowest = std::min(slowest, mode.natural_frequency * mode.damping_ratio);
-  return std::min(kLongestRunIn, kSettled / slowest);
+  return std::min(kLongestRunIn, kTimeConstantsSettled / slowest);
 }
 
 double sample_rate_hz(const CutterMotion& motion, const std::vector<Mode>& modes) {
@@ -42,10 +42,10 @@ double sample_rate_hz(const CutterMotion& motion, const std::vector<Mode>& modes
                   kSamplesPerTooth * motion.tool.teeth * motion.spindle_speed / kTwoPi);
 }
 
-// Displacements one after the other, and what they amount to where passes ask.
+// Displacements of the passes, without their run-ins, one pass after the other, and what they amount to.
 class Recorder {
  public:
-  explicit Recorder(double step) : step_{step} {}
+  Recorder(double step, std::size_t expected) : step_{step} { samples_.reserve(expected); }
 
   void add(const Eigen::Vector3d& displacement, bool counts) {
     samples_.emplace_back(displacement.cast<float>());
@@ -81,24 +81,32 @@ template <typename Begin, typename Sample>
 SurfaceVibration mill(const VibrationSetup& setup, const CutterMotion& motion, std::vector<CutterPass> passes,
                       double step, Begin begin, Sample sample) {
   const double run_in = motion.feed_rate * run_in_time(setup.modes), run_out = end_reach(setup.tool, setup.cut);
-  Recorder recorder(step);
+  const double way = motion.feed_rate * step;  // of a sample
+  std::size_t expected = 0;
+  for (const CutterPass& pass : passes) expected += static_cast<std::size_t>(std::ceil(pass.length / way)) + 3;
+  Recorder recorder(step, expected);
   const auto total = static_cast<double>(passes.size());
+  std::size_t milled = 0;  // samples, run-ins included: the spindle turns on through them
   for (std::size_t i = 0; i < passes.size(); ++i) {
     CutterPass with_run_in = passes[i];
     with_run_in.begin -= (with_run_in.reversed ? -1.0 : 1.0) * run_in;
     with_run_in.length += run_in + run_out;
-    with_run_in.time = recorder.time();
+    with_run_in.time = static_cast<double>(milled) * step;
     with_run_in.angle = std::remainder(motion.spindle_speed * with_run_in.time, kTwoPi);
-    recorder.add(begin(with_run_in), false);
-    const auto count = static_cast<std::size_t>(std::ceil(with_run_in.length / motion.feed_rate / step));
-    for (std::size_t k = 1; k <= count; ++k) {
-      const double travelled = static_cast<double>(k) * step * motion.feed_rate - run_in;
-      recorder.add(sample(), travelled > 0.0 && travelled < passes[i].length);
+    const auto count = static_cast<std::size_t>(std::ceil(with_run_in.length / way));
+    bool recorded = false;
+    for (std::size_t k = 0; k <= count; ++k, ++milled) {
+      const Eigen::Vector3d displacement = k == 0 ? begin(with_run_in) : sample();
+      const double travelled = static_cast<double>(k) * way - run_in;
+      if (travelled > -way && travelled < passes[i].length + way) {  // one before the pass and one after it
+        if (!recorded) passes[i].time = recorder.time() - travelled / motion.feed_rate;
+        recorded = true;
+        recorder.add(displacement, travelled > 0.0 && travelled < passes[i].length);
+      }
       if (setup.progress && k % kProgressSamples == 0)
         setup.progress((static_cast<double>(i) + static_cast<double>(k) / static_cast<double>(count)) / total);
     }
-    passes[i].time = with_run_in.time + run_in / motion.feed_rate;
-    passes[i].angle = std::remainder(motion.spindle_speed * passes[i].time, kTwoPi);
+    passes[i].angle = std::remainder(with_run_in.angle + motion.spindle_speed * run_in / motion.feed_rate, kTwoPi);
   }
   return recorder.finish(std::move(passes));
 }
@@ -208,6 +216,7 @@ VibratingCutter vibrating_cutter(const VibrationSetup& setup, double along, doub
       throw std::runtime_error("the tool vibrates by " + std::to_string(std::lround(1e6 * reach.norm())) +
                                " um, farther than its ball reaches; the cut is unstable");
     }
+    result.vibration = {};  // a large surface's samples are not held twice
     result.vibration = vibrating_passes(setup, passes);
     reach = result.vibration.displacement.reach;
     if ((reach.array() <= result.motion.displacement.reach.array()).all()) {

@@ -23,8 +23,8 @@ struct VibrationSetup {
 };
 
 struct SurfaceVibration {
-  std::vector<CutterPass> passes;  // with the time and the spindle angle at which each was milled
-  Displacement displacement;       // over those times, workpiece axes
+  std::vector<CutterPass> passes;  // with the spindle angle at which each was milled, and its time in `displacement`
+  Displacement displacement;       // of these passes, their run-ins left out, workpiece axes
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), rms = mean, peak = mean;  // m, over the passes; rms about the mean
 };
 

@@ -44,8 +44,7 @@ std::vector<Tick> ticks_of(Range range, int count, bool logarithmic) {
   const std::vector<double> at = logarithmic ? decade_ticks(range) : ticks(range, count);
   for (const double value : at) {
     if (logarithmic) {
-      const double power = std::pow(10.0, value);
-      result.push_back({power, tick_text(power, std::min(power, 1.0))});
+      result.push_back({std::pow(10.0, value), decade_text(value)});
     } else {
       result.push_back({value, tick_text(value, at.size() > 1 ? at[1] - at[0] : 1.0)});
     }

@@ -41,6 +41,17 @@ std::string tick_text(double value, double step) {
   return result;
 }
 
+std::string decade_text(double exponent) {
+  constexpr double kMostZeros = 4.0;
+  const double power = std::pow(10.0, exponent);
+  if (std::abs(exponent) <= kMostZeros) return tick_text(power, std::min(power, 1.0));
+  constexpr std::array kDigits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = exponent < 0.0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::lround(std::abs(exponent))))
+    text += kDigits.at(static_cast<std::size_t>(digit - '0'));
+  return text;
+}
+
 Range axis_range(const Axis& axis, std::span<const std::vector<double>* const> data, double margin) {
   Range range{INFINITY, -INFINITY};
   for (const std::vector<double>* values : data)

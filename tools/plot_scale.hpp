@@ -24,6 +24,9 @@ std::vector<double> decade_ticks(Range range);
 // A tick's value with just the decimals its neighbours need.
 std::string tick_text(double value, double step);
 
+// A power of ten by its logarithm: 0.01, 1, 1000, and 10⁻⁶ where the zeros would have to be counted.
+std::string decade_text(double exponent);
+
 // The range of finite values, widened by `margin` of itself on both sides; never empty. An end the axis fixes stays. Of
 // a logarithmic axis the range of the decimal logarithms.
 Range axis_range(const Axis& axis, std::span<const std::vector<double>* const> data, double margin);

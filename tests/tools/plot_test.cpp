@@ -57,6 +57,10 @@ TEST(Ticks, TextHasTheDecimalsThatTheStepNeeds) {
   EXPECT_EQ(tick_text(3.0, 0.5), "3.0");
   EXPECT_EQ(tick_text(9000.0, 500.0), "9000");
   EXPECT_EQ(tick_text(-2.0, 1.0), "\u22122");
+  EXPECT_EQ(decade_text(-3.0), "0.001");
+  EXPECT_EQ(decade_text(4.0), "10000");
+  EXPECT_EQ(decade_text(-12.0), "10⁻¹²");
+  EXPECT_EQ(decade_text(5.0), "10⁵");
 }
 
 TEST(AxisRange, IgnoresWhatIsNotANumberAndIsNeverEmpty) {
