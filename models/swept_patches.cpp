@@ -41,6 +41,19 @@ void PatchCanvas::settle() {
   }
 }
 
+PatchCanvas::Block PatchCanvas::block(std::size_t number) const {
+  const std::size_t from_x = tile_.along_begin + number % blocks_along_ * kBlock,
+                    from_y = tile_.across_begin + number / blocks_along_ * kBlock;
+  const auto half = [](std::size_t from, std::size_t end) {
+    return 0.5 * static_cast<double>(std::min(from + kBlock, end) - 1 - from);
+  };
+  const double half_x = half(from_x, tile_.along_end), half_y = half(from_y, tile_.across_end);
+  return {static_cast<double>(from_x) + half_x, static_cast<double>(from_y) + half_y, half_x, half_y,
+          block_highest_[number]};
+}
+
+double PatchCanvas::highest() const { return *std::max_element(block_highest_.begin(), block_highest_.end()); }
+
 bool PatchCanvas::hidden(const Box& box, double lowest) const {
   const std::size_t low_x = (box.low_x - tile_.along_begin) / kBlock,
                     high_x = (box.high_x - tile_.along_begin) / kBlock;
@@ -80,13 +93,34 @@ void PatchCanvas::lower(const Corner& a, const Corner& b, const Corner& c, const
   }
 }
 
-void PatchCanvas::sweep(const EdgeRow& before, const EdgeRow& after, double highest) {
-  const int begin = std::max(before.begin, after.begin), end = std::min(before.end, after.end);
+// The points of the tile in a box; none: false.
+inline bool PatchCanvas::box_of(double low_x, double high_x, double low_y, double high_y, Box& box) const {
   const auto first_x = static_cast<double>(tile_.along_begin), last_x = static_cast<double>(tile_.along_end - 1);
   const auto first_y = static_cast<double>(tile_.across_begin), last_y = static_cast<double>(tile_.across_end - 1);
+  if (!(high_x >= first_x && low_x <= last_x && high_y >= first_y && low_y <= last_y)) return false;
+  const auto up = [](double from, double v) {
+    v = std::max(from, v);
+    const auto whole = static_cast<std::int64_t>(v);
+    return static_cast<std::size_t>(whole + (static_cast<double>(whole) < v));
+  };
+  const auto down = [](double to, double v) {
+    return static_cast<std::size_t>(static_cast<std::int64_t>(std::min(to, v)));
+  };
+  box = {up(first_x, low_x), down(last_x, high_x), up(first_y, low_y), down(last_y, high_y)};
+  return box.low_x <= box.high_x && box.low_y <= box.high_y;
+}
+
+bool PatchCanvas::may_lower(double low_x, double high_x, double low_y, double high_y, double lowest) const {
+  Box box{};
+  return box_of(low_x - kSlack, high_x + kSlack, low_y - kSlack, high_y + kSlack, box) && !hidden(box, lowest);
+}
+
+void PatchCanvas::sweep(const EdgeRow& before, const EdgeRow& after, double highest) {
+  const int begin = std::max(before.begin, after.begin), end = std::min(before.end, after.end);
   for (int i = begin; i + 1 < end; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const double lowest = std::min(std::min(before.z[n], before.z[n + 1]), std::min(after.z[n], after.z[n + 1]));
+    if (lowest > highest) continue;
     const double low_x =
         std::min(std::min(before.x[n], before.x[n + 1]), std::min(after.x[n], after.x[n + 1])) - kSlack;
     const double high_x =
@@ -95,18 +129,9 @@ void PatchCanvas::sweep(const EdgeRow& before, const EdgeRow& after, double high
         std::min(std::min(before.y[n], before.y[n + 1]), std::min(after.y[n], after.y[n + 1])) - kSlack;
     const double high_y =
         std::max(std::max(before.y[n], before.y[n + 1]), std::max(after.y[n], after.y[n + 1])) + kSlack;
-    if (lowest > highest || !(high_x >= first_x && low_x <= last_x && high_y >= first_y && low_y <= last_y)) continue;
     ++count_.patches;
-    const auto up = [](double from, double v) {
-      v = std::max(from, v);
-      const auto whole = static_cast<std::int64_t>(v);
-      return static_cast<std::size_t>(whole + (static_cast<double>(whole) < v));
-    };
-    const auto down = [](double to, double v) {
-      return static_cast<std::size_t>(static_cast<std::int64_t>(std::min(to, v)));
-    };
-    const Box box{up(first_x, low_x), down(last_x, high_x), up(first_y, low_y), down(last_y, high_y)};
-    if (box.low_x > box.high_x || box.low_y > box.high_y || hidden(box, lowest)) continue;
+    Box box{};
+    if (!box_of(low_x, high_x, low_y, high_y, box) || hidden(box, lowest)) continue;
     const Corner a{before.x[n], before.y[n], before.z[n]}, b{before.x[n + 1], before.y[n + 1], before.z[n + 1]};
     const Corner c{after.x[n + 1], after.y[n + 1], after.z[n + 1]}, d{after.x[n], after.y[n], after.z[n]};
     lower(a, b, c, box);
