@@ -4,7 +4,9 @@
 // map is passed over, so heights do not depend on the pieces.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,9 +30,19 @@ struct EdgeRange {
   return std::min(knot * kSheetPoints, points - 1);
 }
 
-// How far an edge point of each piece can be from the straight lines between its knots, m, while the tool turns by
-// `turn` rad: the edge is curved, its way is a circle's. `runout` counts as radius.
-[[nodiscard]] std::vector<double> sheet_sag(std::span<const EdgePoint> points, double turn, double runout);
+// How far an edge point of a piece can be from the straight lines between its knots, m, across the tool's axis and
+// along it.
+struct SheetSag {
+  double across = 0.0, along = 0.0;
+  // In a direction of unit length in tool axes.
+  [[nodiscard]] double in(const Eigen::Vector3d& direction) const {
+    return direction.head<2>().norm() * across + std::abs(direction.z()) * along;
+  }
+};
+
+// Of all pieces, while the tool turns by `turn` rad: the edge is curved, its way is a circle's. `runout` counts as
+// radius.
+[[nodiscard]] std::vector<SheetSag> sheet_sag(std::span<const EdgePoint> points, double turn, double runout);
 
 struct SheetRows {
   explicit SheetRows(std::size_t points)

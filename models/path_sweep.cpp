@@ -88,11 +88,11 @@ void PathSweep::place_edge_points(double spacing) {
   for (const EdgePoint& point : points_) put(columns_, point);
   for (std::size_t k = 0; k < knot_count(points_.size()); ++k) put(knots_, points_[knot_point(k, points_.size())]);
   const double turn = kSheetSteps * kTwoPi / static_cast<double>(steps_per_turn_);
-  sag_ = sheet_sag(points_, turn, path_.tool.runout);
   double speed = 0.0;  // m a radian that a straight line between two steps may miss: feed round a corner, vibration
   for (const PathPiece& piece : path_.pieces)
     if (piece.feeds) speed = std::max(speed, path_.displacement.speed / piece.spindle_speed);
-  for (double& sag : sag_) sag += 0.5 * turn * (2.0 * path_.fastest_radian + speed) + 1e-12;
+  for (const SheetSag& sag : sheet_sag(points_, turn, path_.tool.runout))
+    sag_.push_back(std::hypot(sag.across, sag.along) + 0.5 * turn * (2.0 * path_.fastest_radian + speed) + 1e-12);
 }
 
 double PathSweep::axis_turn(const Stretch& stretch) const {

@@ -108,6 +108,7 @@ SurfaceSweep::SurfaceSweep(CutterMotion motion, const Cut& cut, double spacing_a
 // cell.
 void SurfaceSweep::place_edge_points(double spacing) {
   const std::vector<EdgePoint> points = edge_points(motion_, spacing, swept_.highest + swept_.beside.z());
+  const Eigen::Vector3d scale(1.0 / spacing_along_, 1.0 / spacing_across_, 1.0);
   double radius = 0.0;
   for (const EdgePoint& point : points) {
     radius = std::max(radius, point.radius);
@@ -116,7 +117,6 @@ void SurfaceSweep::place_edge_points(double spacing) {
     const Eigen::Vector3d in_map =
         motion_.orientation.col(2) * point.height + motion_.height * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d sine_in_map = motion_.orientation * sine, cosine_in_map = motion_.orientation * cosine;
-    const Eigen::Vector3d scale(1.0 / spacing_along_, 1.0 / spacing_across_, 1.0);
     for (int i = 0; i < 3; ++i) {
       Axis& axis = points_[static_cast<std::size_t>(i)];
       axis.fixed.push_back(in_map[i] * scale[i]);
@@ -139,9 +139,14 @@ void SurfaceSweep::place_edge_points(double spacing) {
       knots_[i].cosine.push_back(points_[i].cosine[n]);
     }
   const double turn = kSheetSteps * kTwoPi / static_cast<double>(steps_per_turn_);
-  sag_ = sheet_sag(points, turn, motion_.tool.runout);
-  // The feed is even; what the vibration strays from a straight line its speed bounds, and rounding is far below 1 pm.
-  for (double& sag : sag_) sag += 0.5 * motion_.displacement.speed * turn / motion_.spindle_speed + 1e-12;
+  // The feed is even; what the vibration strays from a straight line its speed bounds. An upright end mill's bottom has
+  // one height, to the bit; else what rounding takes is far below 1 pm.
+  const double strays = 0.5 * motion_.displacement.speed * turn / motion_.spindle_speed;
+  for (const SheetSag& sag : sheet_sag(points, turn, motion_.tool.runout))
+    for (int i = 0; i < 3; ++i) {
+      const double far = sag.in(motion_.orientation.row(i)) + strays;
+      sag_[static_cast<std::size_t>(i)].push_back((far > 0.0 ? far + 1e-12 : 0.0) * scale[i]);
+    }
 }
 
 // Of each step of a turn the edge points, from the first to the last, that come low enough there.
@@ -263,8 +268,7 @@ struct SurfaceSweep::Sheet {
     return all;
   }
   [[nodiscard]] double sag(int knot, int axis) const {
-    const double sag = sweep.sag_[static_cast<std::size_t>(knot)];
-    return axis == 0 ? sag / sweep.spacing_along_ : axis == 1 ? sag / sweep.spacing_across_ : sag;
+    return sweep.sag_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(knot)];
   }
   void place(std::int64_t step, int begin, int end, EdgeRow& row) const {
     row.begin = begin, row.end = end;

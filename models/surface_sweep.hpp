@@ -67,8 +67,8 @@ class SurfaceSweep {
   double spacing_along_, spacing_across_;
   std::int64_t steps_per_turn_ = 0;
   Edge points_, knots_;
-  std::vector<double> sag_;        // m, of the pieces between knots
-  std::vector<EdgeRange> ranges_;  // of each step of a turn
+  std::array<std::vector<double>, 3> sag_;  // of the pieces between knots, in the units of an edge
+  std::vector<EdgeRange> ranges_;           // of each step of a turn
   std::vector<Window> windows_;
 };
 
