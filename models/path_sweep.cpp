@@ -113,7 +113,7 @@ std::vector<PathSweep::Stretch> PathSweep::stretches_over(const MapTile& tile) c
     if (!piece.feeds) continue;
     const double whole = piece.duration * piece.spindle_speed;
     const auto turns = static_cast<std::size_t>(std::max(1.0, std::ceil(whole / kTwoPi)));
-    const bool goes_on = n + 1 < path_.pieces.size() && path_.pieces[n + 1].feeds;
+    const bool comes_on = n > 0 && path_.pieces[n - 1].feeds;
     // A ball as long as the piece, wide enough for a turning axis: is the tile near at all?
     const BallStroke all =
         ball_stroke(ball_pose(path_, piece, 0.0).centre, ball_pose(path_, piece, piece.duration).centre,
@@ -129,7 +129,7 @@ std::vector<PathSweep::Stretch> PathSweep::stretches_over(const MapTile& tile) c
       stretch.piece = n;
       stretch.begin = piece.angle + from * whole;
       stretch.end = piece.angle + to * whole;
-      stretch.goes_on = k + 1 < turns || goes_on;
+      stretch.comes_on = k > 0 || comes_on;
       stretch.order = order_of(turn);
       const double arc = axis_turn(stretch);
       stretch.body = ball_stroke(ball_pose(path_, piece, from * piece.duration).centre,
@@ -177,16 +177,20 @@ ContactWindow PathSweep::contact(const Stretch& stretch, const PatchCanvas& canv
 }
 
 // edge_position() of the points or knots that the row asks for, at a step counted from spindle angle 0 of the tooth.
-// The step lies in `piece` or, at its end, in one that follows.
+// The step lies in the piece or, at its end, in one that follows; steps before and behind what feeds are its begin and
+// end.
 void PathSweep::place(std::size_t n, std::size_t tooth, std::int64_t step, const Edge& edge, EdgeRow& row) const {
   const double step_angle = kTwoPi / static_cast<double>(steps_per_turn_), tooth_angle = path_.tooth_angle[tooth];
-  const double spindle = step_angle * static_cast<double>(step) - tooth_angle;
+  const double exact = step_angle * static_cast<double>(step) - tooth_angle;
+  double spindle = std::max(exact, path_.pieces[n].angle);
   while (n + 1 < path_.pieces.size() && path_.pieces[n + 1].feeds && spindle >= path_.pieces[n + 1].angle) ++n;
   const PathPiece& piece = path_.pieces[n];
+  spindle = std::min(spindle, piece.angle + piece.duration * piece.spindle_speed);
   const double elapsed = (spindle - piece.angle) / piece.spindle_speed;
   const BallPose pose = ball_pose(path_, piece, elapsed);
   const Eigen::Matrix3d& o = pose.orientation;
-  const double phi = step_angle * static_cast<double>((step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_);
+  const std::int64_t in_turn = (step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_;
+  const double phi = spindle == exact ? step_angle * static_cast<double>(in_turn) : spindle + tooth_angle;
   const double s = std::sin(phi), c = std::cos(phi);
   const double offset = phi - tooth_angle + path_.tool.runout_angle, runout = path_.tool.runout;
   Eigen::Vector3d beside = pose.centre + o * Eigen::Vector3d(runout * std::sin(offset), runout * std::cos(offset),
@@ -247,9 +251,9 @@ SweepCount PathSweep::sweep(HeightMap& map, const MapTile& tile) const {
     for (std::size_t tooth = 0; tooth < path_.tooth_angle.size(); ++tooth) {
       const double begin = (stretch.begin + path_.tooth_angle[tooth]) / step_angle,
                    end = (stretch.end + path_.tooth_angle[tooth]) / step_angle;
-      sweep_sheet(Sheet{*this, stretch, window, tooth}, static_cast<std::int64_t>(std::ceil(begin)),
-                  static_cast<std::int64_t>(stretch.goes_on ? std::ceil(end) : std::floor(end)), kInfinite, canvas,
-                  rows);
+      const double first = stretch.comes_on ? std::ceil(begin) : std::floor(begin), last = std::ceil(end);
+      sweep_sheet(Sheet{*this, stretch, window, tooth}, static_cast<std::int64_t>(first),
+                  static_cast<std::int64_t>(last), kInfinite, canvas, rows);
       canvas.settle();
     }
     highest = canvas.highest();

@@ -40,7 +40,7 @@ class PathSweep {
   struct Stretch {
     std::size_t piece = 0;
     double begin = 0.0, end = 0.0;  // rad, the spindle's
-    bool goes_on = false;           // into what follows, without a gap
+    bool comes_on = false;          // without a gap from what is before
     BallStroke body;                // runout and vibration included
     double lowest = 0.0;            // m, over the tile
     int order = 0;
