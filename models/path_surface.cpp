@@ -93,7 +93,7 @@ PathSurface path_surface(const CutterPath& path, const PathWindow& window, const
   surface.map = uncut_map(window.along, window.across, setup.spacing > 0.0 ? setup.spacing : coarsest_spacing(path));
   if (setup.keep_envelope) surface.envelope = surface.map;
   const PathSweep sweep(path, surface.map, surface.origin, setup.allow_coarse);
-  const std::vector<BallStroke> air = path_strokes(path, false);
+  const std::vector<BallStroke> air = path_strokes(path, false, 0.1 * kLightTouch);
   const double light = kLightTouch + farthest_beside(path);
 
   const std::vector<MapTile> tiles = map_tiles(surface.map);
