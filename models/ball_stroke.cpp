@@ -7,7 +7,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kBeside = std::numeric_limits<double>::infinity();
+constexpr double kNotUnder = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -30,19 +30,19 @@ StrokeLow lowest_over(const BallStroke& s, double x, double y) {
   const double px = x - s.from.x(), py = y - s.from.y();
   const double along = px * s.ux + py * s.uy, aside = px * s.uy - py * s.ux;
   const double room = s.radius * s.radius - aside * aside;
-  if (!(room > 0.0)) return {.height = kBeside};
+  if (!(room > 0.0)) return {.height = kNotUnder};
   // Lowest where the lower side is as steep along the way as the way itself.
   double share = s.way.z() < 0.0 ? 1.0 : 0.0;
   if (s.length > 0.0) share = std::clamp((along - std::sqrt(room) * s.sine) / s.length, 0.0, 1.0);
   const Eigen::Vector2d away(px - share * s.way.x(), py - share * s.way.y());
   const double below = s.radius * s.radius - away.squaredNorm();
-  if (!(below > 0.0)) return {.height = kBeside};
+  if (!(below > 0.0)) return {.height = kNotUnder};
   return {s.from.z() + share * s.way.z() - std::sqrt(below), away, share};
 }
 
 double lowest_in_box(const BallStroke& s, double x, double y, double half_x, double half_y) {
   const StrokeLow low = lowest_over(s, x, y);
-  if (low.height < kBeside) {
+  if (low.height < kNotUnder) {
     const double steep = std::sqrt(s.radius * s.radius - low.away.squaredNorm());
     return low.height - (std::abs(low.away.x()) * half_x + std::abs(low.away.y()) * half_y) / steep;
   }
@@ -51,7 +51,7 @@ double lowest_in_box(const BallStroke& s, double x, double y, double half_x, dou
   const double share = s.length > 0.0 ? std::clamp((px * s.ux + py * s.uy) / s.length, 0.0, 1.0) : 0.0;
   const double away = std::hypot(px - share * s.way.x(), py - share * s.way.y());
   const double nearest = std::max(0.0, away - std::hypot(half_x, half_y));
-  if (!(nearest < s.radius)) return kBeside;
+  if (!(nearest < s.radius)) return kNotUnder;
   return s.from.z() + std::min(0.0, s.way.z()) - std::sqrt(s.radius * s.radius - nearest * nearest);
 }
 

@@ -36,7 +36,7 @@ void clear_shank(HeightMap& map, const MapTile& tile, std::span<const EnvelopePo
     }
 }
 
-void keep(std::span<const EnvelopePoint> envelope, const MapTile& tile, HeightMap& map) {
+void store(std::span<const EnvelopePoint> envelope, const MapTile& tile, HeightMap& map) {
   std::size_t n = 0;
   for (std::size_t j = tile.across_begin; j < tile.across_end; ++j)
     for (std::size_t i = tile.along_begin; i < tile.along_end; ++i, ++n) map.at(i, j) = envelope[n].height;
@@ -104,7 +104,7 @@ PathSurface path_surface(const CutterPath& path, const PathWindow& window, const
     found.count = sweep.sweep(surface.map, tile);
     const std::vector<EnvelopePoint> envelope = sweep.envelope().over(surface.map, tile);
     clear_shank(surface.map, tile, envelope, found);
-    if (setup.keep_envelope) keep(envelope, tile, surface.envelope);
+    if (setup.keep_envelope) store(envelope, tile, surface.envelope);
     find_strikes(surface.map, tile, surface.origin, air, light, found);
   };
   if (setup.workers) {

@@ -11,7 +11,7 @@
 namespace stillcut {
 namespace {
 
-constexpr double kRightAngle = 0.5 * std::numbers::pi;
+constexpr double kEquator = 0.5 * std::numbers::pi;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFinestTurn = 1e7;       // steps: finer than any grid that fits into memory
 constexpr std::size_t kLooksASide = 100;  // at the envelope, to learn how steep the contact is
@@ -61,7 +61,7 @@ void PathSweep::choose_steps(const HeightMap& map) {
   thinned(map.across, map.spacing_across, thin.across, thin.spacing_across);
   double kappa = -1.0;
   for (const EnvelopePoint& point : envelope_.over(thin, {0, thin.along, 0, thin.across}))
-    if (!std::isnan(point.height)) kappa = std::max(kappa, std::min(point.kappa, kRightAngle));
+    if (!std::isnan(point.height)) kappa = std::max(kappa, std::min(point.kappa, kEquator));
   if (kappa < 0.0) throw std::invalid_argument("tool path: it does not come to the rectangle of the map");
   double slowest = kInfinite;
   for (const PathPiece& piece : path_.pieces)
@@ -78,8 +78,8 @@ void PathSweep::choose_steps(const HeightMap& map) {
 
 void PathSweep::place_edge_points(double spacing) {
   const double radius = 0.5 * path_.tool.diameter, slant = std::hypot(1.0, std::tan(path_.tool.helix));
-  const int count = std::max(1, static_cast<int>(std::ceil(kRightAngle * radius * slant / spacing)));
-  for (int i = 0; i <= count; ++i) points_.push_back(ball_edge_point(path_.tool, kRightAngle * i / count));
+  const int count = std::max(1, static_cast<int>(std::ceil(kEquator * radius * slant / spacing)));
+  for (int i = 0; i <= count; ++i) points_.push_back(ball_edge_point(path_.tool, kEquator * i / count));
   const auto put = [](Edge& edge, const EdgePoint& point) {
     edge[0].push_back(point.radius * std::cos(point.lag));
     edge[1].push_back(point.radius * std::sin(point.lag));
@@ -221,7 +221,7 @@ struct PathSweep::Sheet {
     const double from = step_angle * static_cast<double>(in_turn);
     const ContactWindow::Kappas kappas = window.between(from, from + step_angle * static_cast<double>(last - first));
     if (kappas.empty()) return {};
-    const double pieces = static_cast<double>(points() - 1), per_radian = pieces / kRightAngle;
+    const double pieces = static_cast<double>(points() - 1), per_radian = pieces / kEquator;
     return {static_cast<int>(std::max(0.0, std::floor(kappas.low * per_radian) - 1.0)),
             static_cast<int>(std::min(pieces, std::ceil(kappas.high * per_radian) + 1.0)) + 1};
   }
