@@ -53,28 +53,6 @@ std::vector<EdgePoint> edge_points(const CutterMotion& motion, double spacing, d
 
 double coarsest_spacing(const Cut& cut) { return kPaperShare * std::min(cut.feed_per_tooth, step_over_of(cut)); }
 
-HeightMap uncut_map(double along, double across, double spacing) {
-  if (!(along > 0.0 && across > 0.0 && spacing > 0.0) || !std::isfinite(along) || !std::isfinite(across))
-    throw std::invalid_argument("a surface needs a positive size and spacing");
-  HeightMap map;
-  const double cells_along = std::max(1.0, std::ceil(along / spacing * (1.0 - 1e-12))),
-               cells_across = std::max(1.0, std::ceil(across / spacing * (1.0 - 1e-12)));
-  map.along = static_cast<std::size_t>(cells_along) + 1;
-  map.across = static_cast<std::size_t>(cells_across) + 1;
-  map.spacing_along = along / cells_along;
-  map.spacing_across = across / cells_across;
-  map.heights.assign(map.along * map.across, std::numeric_limits<double>::quiet_NaN());
-  return map;
-}
-
-std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points) {
-  std::vector<MapTile> tiles;
-  for (std::size_t j = 0; j < map.across; j += points)
-    for (std::size_t i = 0; i < map.along; i += points)
-      tiles.push_back({i, std::min(i + points, map.along), j, std::min(j + points, map.across)});
-  return tiles;
-}
-
 std::vector<CutterPass> passes_over(const CutterMotion& motion, const Cut& cut, double along, double across,
                                     double turn_time) {
   const double step_over = step_over_of(cut);

@@ -22,13 +22,6 @@ namespace stillcut {
 // The coarsest grid that shows feed marks and scallops: a fifth of the smaller of feed per tooth and step-over, m.
 [[nodiscard]] double coarsest_spacing(const Cut& cut);
 
-// Heights not cut yet over `along` x `across` m, the corners included, points at most `spacing` apart. Throws
-// std::invalid_argument for sizes that are not positive.
-[[nodiscard]] HeightMap uncut_map(double along, double across, double spacing);
-
-// A map cut into tiles of at most `points` x `points`.
-[[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 256);
-
 // The passes that leave the surface over x = 0 to `along`, y = 0 to `across`, as a machine makes them one after the
 // other, with room for the tool to run in and out; one of them lies on y = 0.
 [[nodiscard]] std::vector<CutterPass> passes_over(const CutterMotion& motion, const Cut& cut, double along,

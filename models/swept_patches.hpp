@@ -13,6 +13,13 @@ struct MapTile {
   std::size_t along_begin = 0, along_end = 0, across_begin = 0, across_end = 0;
 };
 
+// Heights not cut yet over `along` x `across` m, the corners included, points at most `spacing` apart. Throws
+// std::invalid_argument for sizes that are not positive.
+[[nodiscard]] HeightMap uncut_map(double along, double across, double spacing);
+
+// A map cut into tiles of at most `points` x `points`.
+[[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 256);
+
 // Neighbouring points of an edge at one time: x and y counted in points of the map, z in m. Of the arrays, indexed by
 // the edge's point, [begin, end) holds.
 struct EdgeRow {
