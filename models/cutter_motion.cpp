@@ -12,11 +12,7 @@ namespace {
 
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 
-void check_cut(const Tool& tool, const Cut& cut) {
-  if (tool.teeth < 1 || tool.pitch.size() != static_cast<std::size_t>(tool.teeth) || !positive(tool.diameter))
-    throw std::invalid_argument("a tool needs a diameter, at least one tooth and one pitch angle a tooth");
-  if (!(tool.runout >= 0.0 && tool.runout < 0.5 * tool.diameter) || !std::isfinite(tool.axial_runout))
-    throw std::invalid_argument("runout: must lie between 0 and the tool's radius");
+void check_cut(const Cut& cut) {
   if (!positive(cut.feed_per_tooth)) throw std::invalid_argument("feed per tooth: must be a positive number");
   if (!positive(cut.spindle_speed)) throw std::invalid_argument("spindle speed: must be a positive number");
   if (!positive(cut.axial_depth))
@@ -28,6 +24,28 @@ void check_cut(const Tool& tool, const Cut& cut) {
 }
 
 }  // namespace
+
+void check_teeth(const Tool& tool) {
+  if (tool.teeth < 1 || tool.pitch.size() != static_cast<std::size_t>(tool.teeth) || !positive(tool.diameter))
+    throw std::invalid_argument("a tool needs a diameter, at least one tooth and one pitch angle a tooth");
+  if (!(tool.runout >= 0.0 && tool.runout < 0.5 * tool.diameter) || !std::isfinite(tool.axial_runout))
+    throw std::invalid_argument("runout: must lie between 0 and the tool's radius");
+}
+
+std::vector<double> tooth_angles(const Tool& tool) {
+  std::vector<double> angles;
+  for (double angle = 0.0; const double pitch : tool.pitch) {
+    angles.push_back(angle);
+    angle += pitch;
+  }
+  return angles;
+}
+
+std::vector<double> axial_offsets(const Tool& tool) {
+  std::vector<double> offsets = tooth_angles(tool);
+  for (double& offset : offsets) offset = tool.axial_runout * std::cos(offset - tool.runout_angle);
+  return offsets;
+}
 
 Displacement sampled_displacement(double first_time, double step, std::vector<Eigen::Vector3f> samples) {
   if (samples.empty() || !positive(step))
@@ -64,7 +82,8 @@ EdgePoint wall_edge_point(const Tool& tool, double height) {
 double CutterMotion::inclination() const { return std::acos(std::clamp(orientation(2, 2), -1.0, 1.0)); }
 
 CutterMotion cutter_motion(const Tool& tool, const Cut& cut, Displacement displacement) {
-  check_cut(tool, cut);
+  check_teeth(tool);
+  check_cut(cut);
   using Eigen::AngleAxisd, Eigen::Vector3d;
   CutterMotion motion;
   motion.tool = tool;
@@ -76,12 +95,8 @@ CutterMotion cutter_motion(const Tool& tool, const Cut& cut, Displacement displa
   motion.from_workpiece = AngleAxisd(-cut.feed_direction, Vector3d::UnitZ()).toRotationMatrix();
   // A ball touches the surface however it is inclined; an inclined end mill does so with one point of its corner.
   motion.height = 0.5 * tool.diameter * (tool.shape == ToolShape::ball ? 1.0 : std::sin(motion.inclination()));
-  // One inclined bottom, not teeth of chance: what MillingSimulation makes of the same two numbers.
-  for (double angle = 0.0; const double pitch : tool.pitch) {
-    motion.tooth_angle.push_back(angle);
-    motion.axial_offset.push_back(tool.axial_runout * std::cos(angle - tool.runout_angle));
-    angle += pitch;
-  }
+  motion.tooth_angle = tooth_angles(tool);
+  motion.axial_offset = axial_offsets(tool);
   motion.displacement = std::move(displacement);
   return motion;
 }

@@ -38,6 +38,14 @@ struct EdgePoint {
 [[nodiscard]] EdgePoint bottom_edge_point(const Tool& tool, double radius);  // an end mill's bottom is flat
 [[nodiscard]] EdgePoint wall_edge_point(const Tool& tool, double height);    // of its cylinder
 
+// Of each tooth: how far its tip stands behind tooth 0, rad, and how much higher than without axial runout, m. One
+// inclined bottom, not teeth of chance: what MillingSimulation makes of the same two numbers.
+[[nodiscard]] std::vector<double> tooth_angles(const Tool& tool);
+[[nodiscard]] std::vector<double> axial_offsets(const Tool& tool);
+
+// Throws std::invalid_argument for a tool without teeth or diameter, or with a runout that it cannot have.
+void check_teeth(const Tool& tool);
+
 // A straight pass with constant feed along x. Time and spindle angle are those at its begin: with them passes follow
 // each other as they do on a machine, and each can be given a phase of its own.
 struct CutterPass {

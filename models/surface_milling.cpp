@@ -14,7 +14,7 @@ namespace {
 constexpr double kLargestTurnAStep = 0.0175;   // rad: one degree
 constexpr double kStepsAPeriod = 60.0;         // of the highest mode
 constexpr double kLargestPiece = 0.0125;       // rad of the profile: the chord's height over the arc is R/51 000
-constexpr double kChipCorrelationTime = 1e-4;  // s: chip formation varies up to some kHz
+constexpr double kChipCorrelationTime = 1e-3;  // s: a tooth's way through the cut; each chip has its own
 constexpr double kBallRoom = 1.1;              // of the depth: vibration lets an edge reach above the stock
 // Points of the map that the chip is measured before the edge: between points behind it, which are cut, and points
 // before it, which are not, there is no height to be had. The force comes so much early, and nothing else changes.

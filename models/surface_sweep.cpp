@@ -53,36 +53,6 @@ std::vector<EdgePoint> edge_points(const CutterMotion& motion, double spacing, d
 
 double coarsest_spacing(const Cut& cut) { return kPaperShare * std::min(cut.feed_per_tooth, step_over_of(cut)); }
 
-HeightMap uncut_map(double along, double across, double spacing) {
-  if (!(along > 0.0 && across > 0.0 && spacing > 0.0) || !std::isfinite(along) || !std::isfinite(across))
-    throw std::invalid_argument("a surface needs a positive size and spacing");
-  const auto cells = [spacing](double length) {
-    return static_cast<std::size_t>(std::max(1.0, std::ceil(length / spacing * (1.0 - 1e-12))));
-  };
-  return uncut_map(along, across, cells(along), cells(across));
-}
-
-HeightMap uncut_map(double along, double across, std::size_t cells_along, std::size_t cells_across) {
-  if (!(along > 0.0 && across > 0.0) || !std::isfinite(along) || !std::isfinite(across) || cells_along == 0 ||
-      cells_across == 0)
-    throw std::invalid_argument("a surface needs a positive size and cells in both directions");
-  HeightMap map;
-  map.along = cells_along + 1;
-  map.across = cells_across + 1;
-  map.spacing_along = along / static_cast<double>(cells_along);
-  map.spacing_across = across / static_cast<double>(cells_across);
-  map.heights.assign(map.along * map.across, std::numeric_limits<double>::quiet_NaN());
-  return map;
-}
-
-std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points) {
-  std::vector<MapTile> tiles;
-  for (std::size_t j = 0; j < map.across; j += points)
-    for (std::size_t i = 0; i < map.along; i += points)
-      tiles.push_back({i, std::min(i + points, map.along), j, std::min(j + points, map.across)});
-  return tiles;
-}
-
 std::vector<CutterPass> passes_over(const CutterMotion& motion, const Cut& cut, double along, double across,
                                     double turn_time) {
   const double step_over = step_over_of(cut);
@@ -116,6 +86,7 @@ SurfaceSweep::SurfaceSweep(CutterMotion motion, const Cut& cut, double spacing_a
 // cell.
 void SurfaceSweep::place_edge_points(double spacing) {
   const std::vector<EdgePoint> points = edge_points(motion_, spacing, swept_.highest + swept_.beside.z());
+  const Eigen::Vector3d scale(1.0 / spacing_along_, 1.0 / spacing_across_, 1.0);
   double radius = 0.0;
   for (const EdgePoint& point : points) {
     radius = std::max(radius, point.radius);
@@ -124,10 +95,8 @@ void SurfaceSweep::place_edge_points(double spacing) {
     const Eigen::Vector3d in_map =
         motion_.orientation.col(2) * point.height + motion_.height * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d sine_in_map = motion_.orientation * sine, cosine_in_map = motion_.orientation * cosine;
-    const Eigen::Vector3d scale(1.0 / spacing_along_, 1.0 / spacing_across_, 1.0);
-    const std::array axes{&x_, &y_, &z_};
     for (int i = 0; i < 3; ++i) {
-      Axis& axis = *axes[static_cast<std::size_t>(i)];
+      Axis& axis = points_[static_cast<std::size_t>(i)];
       axis.fixed.push_back(in_map[i] * scale[i]);
       axis.sine.push_back(sine_in_map[i] * scale[i]);
       axis.cosine.push_back(cosine_in_map[i] * scale[i]);
@@ -139,18 +108,36 @@ void SurfaceSweep::place_edge_points(double spacing) {
   const double steps = std::ceil(travel / spacing);
   if (!(steps < kMostStepsATurn)) throw std::invalid_argument("grid: too fine for this tool");
   steps_per_turn_ = std::max<std::int64_t>(8, static_cast<std::int64_t>(steps));
+
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < knot_count(points.size()); ++k) {
+      const std::size_t n = knot_point(k, points.size());
+      knots_[i].fixed.push_back(points_[i].fixed[n]);
+      knots_[i].sine.push_back(points_[i].sine[n]);
+      knots_[i].cosine.push_back(points_[i].cosine[n]);
+    }
+  const double turn = kSheetSteps * kTwoPi / static_cast<double>(steps_per_turn_);
+  // The feed is even; what the vibration strays from a straight line its speed bounds. An upright end mill's bottom has
+  // one height, to the bit; else what rounding takes is far below 1 pm.
+  const double strays = 0.5 * motion_.displacement.speed * turn / motion_.spindle_speed;
+  for (const SheetSag& sag : sheet_sag(points, turn, motion_.tool.runout))
+    for (int i = 0; i < 3; ++i) {
+      const double far = sag.in(motion_.orientation.row(i)) + strays;
+      sag_[static_cast<std::size_t>(i)].push_back((far > 0.0 ? far + 1e-12 : 0.0) * scale[i]);
+    }
 }
 
 // Of each step of a turn the edge points, from the first to the last, that come low enough there.
-std::vector<SurfaceSweep::Range> SurfaceSweep::low_points() const {
+std::vector<EdgeRange> SurfaceSweep::low_points() const {
+  const auto& [fixed, sine, cosine] = points_[2];
   const double low = swept_.highest + swept_.beside.z();
-  std::vector<Range> result(static_cast<std::size_t>(steps_per_turn_));
+  std::vector<EdgeRange> result(static_cast<std::size_t>(steps_per_turn_));
   for (std::int64_t k = 0; k < steps_per_turn_; ++k) {
     const double phi = kTwoPi * static_cast<double>(k) / static_cast<double>(steps_per_turn_);
     const double s = std::sin(phi), c = std::cos(phi);
-    Range& range = result[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < z_.fixed.size(); ++i) {
-      if (z_.fixed[i] + z_.sine[i] * s + z_.cosine[i] * c > low) continue;
+    EdgeRange& range = result[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      if (fixed[i] + sine[i] * s + cosine[i] * c > low) continue;
       if (range.begin == range.end) range.begin = static_cast<int>(i);
       range.end = static_cast<int>(i) + 1;
     }
@@ -159,21 +146,21 @@ std::vector<SurfaceSweep::Range> SurfaceSweep::low_points() const {
 }
 
 void SurfaceSweep::find_windows() {
-  const std::vector<Range> low = low_points();
+  const std::vector<EdgeRange> low = low_points();
   const std::int64_t turn = steps_per_turn_;
   const auto at = [turn](std::int64_t k) { return static_cast<std::size_t>((k % turn + turn) % turn); };
   // A patch has four corners: a range takes in those of the steps beside it, and a point more at each end.
   ranges_.assign(low.size(), {});
   for (std::int64_t k = 0; k < turn; ++k) {
-    Range& range = ranges_[at(k)];
+    EdgeRange& range = ranges_[at(k)];
     for (std::int64_t beside = k - 1; beside <= k + 1; ++beside) {
-      const Range& other = low[at(beside)];
+      const EdgeRange& other = low[at(beside)];
       if (other.begin == other.end) continue;
-      range =
-          range.begin == range.end ? other : Range{std::min(range.begin, other.begin), std::max(range.end, other.end)};
+      range = range.begin == range.end ? other
+                                       : EdgeRange{std::min(range.begin, other.begin), std::max(range.end, other.end)};
     }
     if (range.begin == range.end) continue;
-    range = {std::max(0, range.begin - 1), std::min(static_cast<int>(z_.fixed.size()), range.end + 1)};
+    range = {std::max(0, range.begin - 1), std::min(static_cast<int>(points_[0].fixed.size()), range.end + 1)};
   }
   const auto empty = [&](std::int64_t k) { return ranges_[at(k)].begin == ranges_[at(k)].end; };
   std::int64_t gap = 0;
@@ -193,8 +180,10 @@ void SurfaceSweep::find_windows() {
       const double phi = kTwoPi * static_cast<double>(at(k)) / static_cast<double>(turn);
       for (int i = ranges_[at(k)].begin; i < ranges_[at(k)].end; ++i) {
         const auto n = static_cast<std::size_t>(i);
-        const double x = x_.fixed[n] + x_.sine[n] * std::sin(phi) + x_.cosine[n] * std::cos(phi);
-        const double y = y_.fixed[n] + y_.sine[n] * std::sin(phi) + y_.cosine[n] * std::cos(phi);
+        const auto along = [&](const Axis& axis) {
+          return axis.fixed[n] + axis.sine[n] * std::sin(phi) + axis.cosine[n] * std::cos(phi);
+        };
+        const double x = along(points_[0]), y = along(points_[1]);
         window.low_x = std::min(window.low_x, x), window.high_x = std::max(window.high_x, x);
         window.low_y = std::min(window.low_y, y), window.high_y = std::max(window.high_y, y);
       }
@@ -216,8 +205,10 @@ bool SurfaceSweep::touches(const CutterPass& pass, double begun, const Window& w
          y + window.low_y - beside_y <= static_cast<double>(tile.across_end);
 }
 
-// The edge at a step, counted from where the tooth's angle was 0 before the pass began: edge_position() for all points.
-void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t step, EdgeRow& row) const {
+// The edge at a step, counted from where the tooth's angle was 0 before the pass began: edge_position() for the points
+// or knots that the row asks for.
+void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const Edge& edge,
+                         EdgeRow& row) const {
   const double step_angle = kTwoPi / static_cast<double>(steps_per_turn_), tooth_angle = motion_.tooth_angle[tooth];
   const std::int64_t in_turn = (step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_;
   const double phi = step_angle * static_cast<double>(in_turn);
@@ -229,21 +220,47 @@ void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t
       displacement_at(motion_, pass.time + time);
   const double x = pass.begin + (pass.reversed ? -1.0 : 1.0) * motion_.feed_rate * time + beside.x();
   const double s = std::sin(phi), c = std::cos(phi);
-  const Range& range = ranges_[static_cast<std::size_t>(in_turn)];
-  row.begin = range.begin;
-  row.end = range.end;
   const auto combined = [&](const Axis& axis, double from, std::vector<double>& out) {
-    combine(axis.fixed.data(), axis.sine.data(), axis.cosine.data(), s, c, from, out.data(), range.begin, range.end);
+    combine(axis.fixed.data(), axis.sine.data(), axis.cosine.data(), s, c, from, out.data(), row.begin, row.end);
   };
-  combined(x_, x / spacing_along_, row.x);
-  combined(y_, (pass.across + beside.y()) / spacing_across_, row.y);
-  combined(z_, beside.z(), row.z);
+  combined(edge[0], x / spacing_along_, row.x);
+  combined(edge[1], (pass.across + beside.y()) / spacing_across_, row.y);
+  combined(edge[2], beside.z(), row.z);
 }
+
+// What a tooth sweeps in a pass.
+struct SurfaceSweep::Sheet {
+  const SurfaceSweep& sweep;
+  const CutterPass& pass;
+  std::size_t tooth;
+
+  [[nodiscard]] std::size_t points() const { return sweep.points_[0].fixed.size(); }
+  [[nodiscard]] EdgeRange range(std::int64_t first, std::int64_t last) const {
+    const std::int64_t turn = sweep.steps_per_turn_;
+    EdgeRange all;
+    for (std::int64_t step = first; step <= last; ++step) {
+      const EdgeRange& range = sweep.ranges_[static_cast<std::size_t>((step % turn + turn) % turn)];
+      if (range.begin == range.end) continue;
+      all = all.begin == all.end ? range : EdgeRange{std::min(all.begin, range.begin), std::max(all.end, range.end)};
+    }
+    return all;
+  }
+  [[nodiscard]] double sag(int knot, int axis) const {
+    return sweep.sag_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(knot)];
+  }
+  void place(std::int64_t step, int begin, int end, EdgeRow& row) const {
+    row.begin = begin, row.end = end;
+    sweep.place(pass, tooth, step, sweep.points_, row);
+  }
+  void place_knots(std::int64_t step, int begin, int end, EdgeRow& row) const {
+    row.begin = begin, row.end = end;
+    sweep.place(pass, tooth, step, sweep.knots_, row);
+  }
+};
 
 SweepCount SurfaceSweep::sweep(HeightMap& map, const MapTile& tile, std::span<const CutterPass> passes) const {
   PatchCanvas canvas(map, tile);
-  const std::vector<double> blank(z_.fixed.size());
-  EdgeRow before{blank, blank, blank}, after = before;
+  SheetRows rows(points_[0].fixed.size());
   const double step_angle = kTwoPi / static_cast<double>(steps_per_turn_);
   for (std::size_t level = 0; level < kStrides.size(); ++level)
     for (const CutterPass& pass : passes)
@@ -262,12 +279,7 @@ SweepCount SurfaceSweep::sweep(HeightMap& map, const MapTile& tile, std::span<co
             const std::int64_t first = std::max(first_step, turn * steps_per_turn_ + window.first),
                                last = std::min(last_step, turn * steps_per_turn_ + window.last);
             if (first >= last) continue;
-            place(pass, tooth, first, before);
-            for (std::int64_t step = first + 1; step <= last; ++step) {
-              place(pass, tooth, step, after);
-              canvas.sweep(before, after, swept_.highest);
-              std::swap(before, after);
-            }
+            sweep_sheet(Sheet{*this, pass, tooth}, first, last, swept_.highest, canvas, rows);
             canvas.settle();
           }
         }

@@ -6,12 +6,14 @@
 // and the heights are the same, bit for bit, however the map is tiled.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "models/cutter_envelope.hpp"
 #include "models/cutter_motion.hpp"
+#include "models/edge_sheet.hpp"
 #include "models/height_map.hpp"
 #include "models/swept_patches.hpp"
 
@@ -19,15 +21,6 @@ namespace stillcut {
 
 // The coarsest grid that shows feed marks and scallops: a fifth of the smaller of feed per tooth and step-over, m.
 [[nodiscard]] double coarsest_spacing(const Cut& cut);
-
-// Heights not cut yet over `along` x `across` m, the corners included, points at most `spacing` apart. Throws
-// std::invalid_argument for sizes that are not positive.
-[[nodiscard]] HeightMap uncut_map(double along, double across, double spacing);
-// The same with so many cells in each direction, one point more than that.
-[[nodiscard]] HeightMap uncut_map(double along, double across, std::size_t cells_along, std::size_t cells_across);
-
-// A map cut into tiles of at most `points` x `points`.
-[[nodiscard]] std::vector<MapTile> map_tiles(const HeightMap& map, std::size_t points = 256);
 
 // The passes that leave the surface over x = 0 to `along`, y = 0 to `across`, as a machine makes them one after the
 // other, with room for the tool to run in and out; one of them lies on y = 0.
@@ -51,24 +44,24 @@ class SurfaceSweep {
     std::int64_t first = 0, last = 0;
     double low_x = 0.0, high_x = 0.0, low_y = 0.0, high_y = 0.0;
   };
-  struct Range {
-    int begin = 0, end = 0;  // edge points
-  };
   struct Axis {
     std::vector<double> fixed, sine, cosine;  // an edge point is their sum at its tooth's angle
   };
+  using Edge = std::array<Axis, 3>;  // x and y in points of the map, z in m
+  struct Sheet;
   void place_edge_points(double spacing);
   void find_windows();
-  [[nodiscard]] std::vector<Range> low_points() const;
+  [[nodiscard]] std::vector<EdgeRange> low_points() const;
   [[nodiscard]] bool touches(const CutterPass& pass, double begun, const Window& window, const MapTile& tile) const;
-  void place(const CutterPass& pass, std::size_t tooth, std::int64_t step, EdgeRow& row) const;
+  void place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const Edge& edge, EdgeRow& row) const;
 
   CutterMotion motion_;
   SweptHeights swept_;
   double spacing_along_, spacing_across_;
   std::int64_t steps_per_turn_ = 0;
-  Axis x_, y_, z_;             // x and y in points of the map, z in m
-  std::vector<Range> ranges_;  // of each step of a turn
+  Edge points_, knots_;
+  std::array<std::vector<double>, 3> sag_;  // of the pieces between knots, in the units of an edge
+  std::vector<EdgeRange> ranges_;           // of each step of a turn
   std::vector<Window> windows_;
 };
 

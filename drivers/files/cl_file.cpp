@@ -122,6 +122,7 @@ class ClReader {
 
   void begin_at(const Eigen::Vector3d& at) {
     position_ = at;
+    axis_there_ = axis_;
     begins_ = false;
   }
 
@@ -152,7 +153,10 @@ class ClReader {
     const bool cuts = !std::exchange(rapid_, false) && !begins_;
     if (position_) {
       builder_.add(*position_, to,
-                   {.feed_rate = cuts ? feed_rate() : kNotSaid, .spindle_speed = speed_, .tool_axis = axis_},
+                   {.feed_rate = cuts ? feed_rate() : kNotSaid,
+                    .spindle_speed = speed_,
+                    .tool_axis = axis_,
+                    .axis_from = axis_there_},
                    said_.line);
     }
     begin_at(to);
@@ -225,7 +229,7 @@ class ClReader {
   PathBuilder builder_;
   ClStatement said_;
   std::optional<Eigen::Vector3d> position_;
-  Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ(), axis_there_ = axis_;  // in effect; where the tool is
   bool begins_ = true, rapid_ = false, named_ = false, per_turn_ = false;
   double unit_ = kClMillimetre;
   double feed_ = kNotSaid;                           // m a minute, or a turn

@@ -47,6 +47,7 @@ void PathBuilder::add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, co
   move.from = from;
   move.to = to;
   move.tool_axis = motion.tool_axis;
+  move.axis_from = motion.axis_from;
   move.cutting = cutting;
   move.feed_rate = motion.feed_rate;
   move.spindle_speed = motion.spindle_speed;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "models/tool_path.hpp"
@@ -20,6 +21,7 @@ struct PathMotion {
   double feed_rate = 0.0;      // m/s
   double spindle_speed = 0.0;  // rad/s; NaN: not said; 0: stands still
   Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();
+  std::optional<Eigen::Vector3d> axis_from{};  // where it is not the axis all along
 };
 
 class PathBuilder {

@@ -160,9 +160,8 @@ TEST(MilledProfile, OfABallIsThatOfItsSurface) {
   const CutTrack track = track_of(f, shaken);
   const double from = 10e-3, spacing = 5e-6;
   const std::vector<double> floor = floor_heights(f.tool, f.cut, track, from, spacing, 160);
-  std::vector<Eigen::Vector3d> samples;
-  for (const Eigen::Vector3f& sample : track.displacement) samples.push_back(sample.cast<double>());
-  const CutterMotion motion = cutter_motion(f.tool, f.cut, sampled_displacement(0.0, kTrackStep, samples));
+  const CutterMotion motion =
+      cutter_motion(f.tool, f.cut, sampled_displacement(0.0, kTrackStep, track.displacement));
   HeightMap map{.along = 160,
                 .across = 41,
                 .spacing_along = spacing,

@@ -53,6 +53,16 @@ TEST(ClFile, PlungeIsAlongTheToolsAxis) {
   EXPECT_TRUE(path.moves[2].cutting);
 }
 
+// The axis turns on the way, from where it stood: also from where it was turned on the spot, which is no move.
+TEST(ClFile, AMoveBeginsWithTheAxisThatTheToolHas) {
+  const ToolPath path =
+      cutter_locations(kClStart + "GOTO/1,0,0,0,0.6,0.8\nGOTO/2,0,0\nGOTO/2,0,0,0,0,1\nGOTO/3,0,0,0.6,0,0.8\n");
+  ASSERT_EQ(path.moves.size(), 3U);
+  EXPECT_EQ(path.moves[0].axis_from, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(path.moves[1].axis_from, path.moves[0].tool_axis);
+  EXPECT_EQ(path.moves[2].axis_from, Eigen::Vector3d::UnitZ());
+}
+
 TEST(ClFile, ReadsEveryFormOfFeedAndSpindle) {
   struct {
     const char* line;
