@@ -6,65 +6,48 @@
 #include <stdexcept>
 
 namespace stillcut::surface_study {
-namespace {
 
-constexpr std::uint64_t kFitSeed = 1, kPredictionSeed = 101;  // and the area's number
-
-}  // namespace
-
-double misfit(const AreaFigures& figures, const PublishedArea& area) {
-  return 0.5 * (std::log(1e6 * figures.ra / area.ra_measured) + std::log(1e6 * figures.rq / area.rq_measured));
+AreaFigures expected_figures(int of_case, const std::vector<Mode>& modes, double noise,
+                             std::span<const std::uint64_t> seeds, int jobs) {
+  AreaFigures mean;
+  const double share = 1.0 / static_cast<double>(seeds.size());
+  for (const std::uint64_t seed : seeds) {
+    const AreaFigures one = area_surface(cut_of_case(of_case), modes, noise, seed, jobs).figures;
+    mean.ra += share * one.ra, mean.rq += share * one.rq;
+    mean.ra_along += share * one.ra_along, mean.rq_along += share * one.rq_along;
+    mean.sa += share * one.sa, mean.sq += share * one.sq;
+    mean.interval_along += share * one.interval_along, mean.width_along += share * one.width_along;
+    mean.peak += share * one.peak;
+  }
+  return mean;
 }
 
-double fitted_stiffness(std::span<const FitPoint> points) {
-  std::vector<const FitPoint*> known;
-  for (const FitPoint& point : points)
-    if (std::isfinite(point.misfit)) known.push_back(&point);
-  if (known.size() < 3) throw std::invalid_argument("a parabola needs three points whose cut is held");
-  Eigen::MatrixXd powers(known.size(), 3);
-  Eigen::VectorXd values(known.size());
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const double x = std::log(known[i]->stiffness);
-    const auto row = static_cast<Eigen::Index>(i);
-    powers.row(row) << 1.0, x, x * x;
-    values[row] = known[i]->misfit;
-    low = std::min(low, x), high = std::max(high, x);
+double fitted_stiffness(std::span<const FitPoint> points, const PublishedArea& area) {
+  if (points.size() < 3) throw std::invalid_argument("a parabola needs three points");
+  Eigen::MatrixXd powers(points.size(), 3);
+  Eigen::VectorXd off(points.size());  // logarithm of both figures over the measured ones
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = std::log(points[i].stiffness);
+    const AreaFigures& figures = points[i].figures;
+    powers.row(static_cast<Eigen::Index>(i)) << 1.0, x, x * x;
+    off[static_cast<Eigen::Index>(i)] =
+        std::log(1e6 * figures.ra / area.ra_measured) + std::log(1e6 * figures.rq / area.rq_measured);
   }
-  const Eigen::Vector3d parabola = powers.colPivHouseholderQr().solve(values);
+  const Eigen::Vector3d parabola = powers.colPivHouseholderQr().solve(off);
   constexpr int kSteps = 2000;
+  const double low = std::log(points.front().stiffness), high = std::log(points.back().stiffness);
   double best = low, least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSteps; ++i) {
-    const double x = low + (high - low) * i / kSteps, off = std::abs(parabola.dot(Eigen::Vector3d(1.0, x, x * x)));
-    if (off < least) best = x, least = off;
+    const double x = low + (high - low) * i / kSteps, value = std::abs(parabola.dot(Eigen::Vector3d(1.0, x, x * x)));
+    if (value < least) best = x, least = value;
   }
   return std::exp(best);
 }
 
-std::vector<FitPoint> fit_points(std::size_t area, std::span<const double> stiffness, const StudySettings& settings,
-                                 int jobs, const std::function<void(const FitPoint&, const AreaFigures&)>& done) {
-  std::vector<FitPoint> points;
-  for (const double value : stiffness) {
-    FitPoint point{value, std::numeric_limits<double>::infinity()};
-    AreaFigures figures;
-    try {
-      figures = area_surface(cut_of_case(kPublished.at(area).of_case), modes_of(settings.modes, value), settings.noise,
-                             kFitSeed + area, jobs)
-                    .figures;
-      point.misfit = misfit(figures, kPublished.at(area));
-    } catch (const std::runtime_error&) {  // this soft, nothing holds it
-    }
-    done(point, figures);
-    points.push_back(point);
-  }
-  return points;
-}
-
-AreaSurface left_out_surface(std::size_t area, const std::array<double, kAreas>& stiffness,
-                             const StudySettings& settings, int jobs) {
-  return area_surface(cut_of_case(kPublished.at(area).of_case),
-                      predicted_modes(area_map(settings.modes, stiffness, area), area), settings.noise,
-                      kPredictionSeed + area, jobs);
+AreaFigures left_out_figures(std::size_t area, const std::array<double, kAreas>& stiffness,
+                             const StudySettings& settings, std::span<const std::uint64_t> seeds, int jobs) {
+  return expected_figures(kPublished.at(area).of_case, predicted_modes(area_map(settings.modes, stiffness, area), area),
+                          settings.noise, seeds, jobs);
 }
 
 }  // namespace stillcut::surface_study

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <cstdint>
 #include <span>
 
 #include "tests/surface_study/area_map.hpp"
@@ -12,33 +12,29 @@ namespace stillcut::surface_study {
 
 // What is the same everywhere, chosen by hand (docs/surface-case-study.md says how).
 struct StudySettings {
-  AreaModes modes{.frequency_hz = 64.0, .damping_ratio = 0.03};
-  double noise = 0.02;  // rms of the force, the default of `stillcut simulate`
+  AreaModes modes{.frequency_hz = 64.0, .damping_ratio = 0.05};
+  double noise = 0.6;  // rms of the force
 };
 
-// As case_study_surface_fit finds them, N/m.
-inline constexpr std::array<double, kAreas> kFittedStiffness{0.60e6, 0.60e6, 0.60e6, 0.60e6, 0.60e6, 0.60e6};
+// As surface_study_fit finds them, N/m, A to F.
+inline constexpr std::array<double, kAreas> kFittedStiffness{1.12e6, 0.95e6, 0.93e6, 1.19e6, 0.96e6, 1.01e6};
 
-// How far R_a and R_q together are off, logarithm of the ratio to what was measured.
-[[nodiscard]] double misfit(const AreaFigures& figures, const PublishedArea& area);
+// What a surface is expected to be: the mean over cuts whose force varies otherwise, as nobody knows it beforehand.
+[[nodiscard]] AreaFigures expected_figures(int of_case, const std::vector<Mode>& modes, double noise,
+                                           std::span<const std::uint64_t> seeds, int jobs);
 
 struct FitPoint {
   double stiffness = 0.0;  // N/m
-  double misfit = 0.0;     // as above; infinite where the cut ran away
+  AreaFigures figures;
 };
 
-// Roughness falls with stiffness, with some scatter: where the parabola through the points, in logarithms, goes through
-// zero, or comes nearest to it between the first and the last point.
-[[nodiscard]] double fitted_stiffness(std::span<const FitPoint> points);
+// Where R_a and R_q together are as measured: on a parabola through the points, in logarithms, between the first and
+// the last of them. Throws std::invalid_argument for fewer than three points.
+[[nodiscard]] double fitted_stiffness(std::span<const FitPoint> points, const PublishedArea& area);
 
-// The area's cut on modes of these stiffnesses.
-[[nodiscard]] std::vector<FitPoint> fit_points(std::size_t area, std::span<const double> stiffness,
-                                               const StudySettings& settings, int jobs,
-                                               const std::function<void(const FitPoint&, const AreaFigures&)>& done);
-
-// Leaving each area out in turn: what the map of the other five says of its surface. Another seed than the fit's: what
-// noise does to a cut is not known beforehand.
-[[nodiscard]] AreaSurface left_out_surface(std::size_t area, const std::array<double, kAreas>& stiffness,
-                                           const StudySettings& settings, int jobs);
+// What the map of the other five says of the surface of an area that it has not.
+[[nodiscard]] AreaFigures left_out_figures(std::size_t area, const std::array<double, kAreas>& stiffness,
+                                           const StudySettings& settings, std::span<const std::uint64_t> seeds,
+                                           int jobs);
 
 }  // namespace stillcut::surface_study
