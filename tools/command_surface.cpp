@@ -24,7 +24,8 @@ namespace {
 
 struct SurfaceOptions : OutputOptions {
   std::string cell, size = "2x2", grid, resample, posture, compare, sdf, stl, relief;
-  std::string profile = "across", form = "linear";
+  std::string path, corner;
+  std::string profile = "across", form;
   std::optional<double> cutoff_mm;
   bool still = false, allow_coarse = false;
   double force_noise = SurfaceQuestion{}.force_noise;
@@ -62,10 +63,19 @@ SurfaceQuestion question_of(const SurfaceOptions& options) {
   if (!options.resample.empty())
     question.points = parse_grid("--resample", options.resample, 3, "ALONGxACROSS the feed in points, such as 100x100");
   question.allow_coarse = options.allow_coarse;
-  question.vibration = !options.still;
+  question.path = options.path;
+  const bool along_path = !options.path.empty();
+  if (!along_path && (!options.corner.empty() || options.form == "envelope"))
+    throw CLI::ValidationError("--path", "--corner and --form envelope are said of a tool path");
+  if (!options.corner.empty())
+    question.corner = parse_pair<double>("--corner", options.corner, -1e5, 1e5, "XxY in mm, such as 10x25");
+  if (question.corner) question.corner->first *= 1e-3, question.corner->second *= 1e-3;
+  question.less_envelope = options.form == "envelope";
+  question.vibration = !options.still && !along_path;
   question.posture = options.posture;
   question.profile = options.profile == "along" ? ProfileDirection::along : ProfileDirection::across;
-  question.roughness = {options.form == "quadratic" ? SurfaceForm::quadratic : SurfaceForm::linear,
+  const bool quadratic = options.form.empty() ? along_path : options.form == "quadratic";
+  question.roughness = {quadratic ? SurfaceForm::quadratic : SurfaceForm::linear,
                         options.cutoff_mm ? 1e-3 * *options.cutoff_mm : 0.0};
   question.force_noise = options.force_noise;
   question.seed = options.seed;
@@ -125,9 +135,9 @@ void add_surface_figures_options(CLI::App& command, SurfaceOptions& options) {
       ->check(CLI::IsMember({"across", "along"}));
   command
       .add_option("--form", options.form,
-                  "Removed before: least-squares line or plane (linear), polynomial of order two (quadratic)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"linear", "quadratic"}));
+                  "Removed before: least-squares line or plane (linear, the default), polynomial of order two "
+                  "(quadratic, the default along a path), what the ball's body alone leaves along it (envelope)")
+      ->check(CLI::IsMember({"linear", "quadratic", "envelope"}));
   command
       .add_option("--cutoff", options.cutoff_mm,
                   "Gaussian filter's λ_c in mm: longer waves are left out (default: no filter)")
@@ -153,6 +163,10 @@ void add_surface_command(CLI::App& app) {
   command->add_option("--posture", options->posture,
                       "Id of a measured posture, j1,...,j6 in degrees, or x,y,z in mm where the machine has no joints "
                       "(default: the cell's)");
+  command->add_option("--path", options->path,
+                      "Tool path, G-code or APT CL, on any form, instead of the cell's passes; without vibration");
+  command->add_option("--corner", options->corner,
+                      "XxY in mm, where on the workpiece its surface begins (default: the middle of the path)");
   add_surface_figures_options(*command, *options);
   add_output_options(*command, *options, "Write the heights: x_mm,y_mm,z_mm, a row a point",
                      "Draw heights, profiles and spectra");
@@ -161,15 +175,17 @@ void add_surface_command(CLI::App& app) {
   command->add_option("--relief", options->relief, "Draw the surface in three dimensions, to a .svg or .png file");
   command->add_option("--force-noise", options->force_noise, "Variation of the cutting force, rms, relative")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 0.5).description(""));
+      ->check(CLI::Range(0.0, 1.0).description(""));
   command->add_option("--seed", options->seed, "Of that noise")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads (default: one a processor)")
       ->check(CLI::Range(1, 256).description(""));
   command->footer(
-      "Examples: what a cell's cut leaves, as a table and a picture; at another posture, beside a measured map:\n"
-      "  stillcut surface examples/surface-cell/cell.toml --plot surface.png\n"
+      "Examples: what a cell's cut leaves, as a table and a picture; at another posture, beside a measured map; along\n"
+      "a tool path:\n"
+      "  stillcut surface examples/surface-cell/cell.toml --force-noise 0.6 --plot surface.png\n"
       "  stillcut surface examples/surface-cell/cell.toml --grid 500x500 --resample 100x100 --posture B \\\n"
-      "    --compare measured.sdf --relief relief.png");
+      "    --compare measured.sdf --relief relief.png\n"
+      "  stillcut surface examples/surface-cell/cell.toml --path part.cls --size 3x3 --relief relief.png");
   command->callback([options] { surface(*options); });
 }
 

@@ -67,12 +67,16 @@ std::vector<plot::Panel> spectrum_panels(const HeightMap& map) {
 }  // namespace
 
 std::string surface_title(const StudiedSurface& study) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "%s%s%g mm %s, %.0f rpm, feed %.3g mm a tooth, step-over %.3g mm",
-                study.material.c_str(), study.material.empty() ? "" : ": ", 1e3 * study.tool.diameter,
-                study.tool.shape == ToolShape::ball ? "ball end" : "end mill", rad_s_to_rpm(study.cut.spindle_speed),
-                1e3 * study.cut.feed_per_tooth, 1e3 * step_over_of(study.cut));
-  return text.data();
+  std::array<char, 240> text{};
+  const auto written = static_cast<std::size_t>(
+      std::max(0, std::snprintf(text.data(), text.size(), "%s%s%g mm %s, ", study.material.c_str(),
+                                study.material.empty() ? "" : ": ", 1e3 * study.tool.diameter,
+                                study.tool.shape == ToolShape::ball ? "ball end" : "end mill")));
+  const std::string tool(text.data(), std::min(written, text.size() - 1));
+  if (!study.question.path.empty()) return tool + "along " + study.question.path.filename().string();
+  std::snprintf(text.data(), text.size(), "%.0f rpm, feed %.3g mm a tooth, step-over %.3g mm",
+                rad_s_to_rpm(study.cut.spindle_speed), 1e3 * study.cut.feed_per_tooth, 1e3 * step_over_of(study.cut));
+  return tool + text.data();
 }
 
 plot::Figure surface_study_figure(const StudiedSurface& study, const MeasuredSurface* measured) {

@@ -88,17 +88,30 @@ const char* profile_name(const StudiedSurface& study) {
   return study.question.profile == ProfileDirection::across ? "across" : "along";
 }
 
-std::string head_text(const StudiedSurface& study) {
-  const SurfaceQuestion& question = study.question;
+std::string passes_text(const Cut& cut) {
   std::string text =
-      said("%g x %g mm%s%s by a %g mm %s, %d teeth, %.0f rpm; feed %.3g mm a tooth, step-over %.3g mm",
-           1e3 * question.along, 1e3 * question.across, study.material.empty() ? "" : " of ", study.material.c_str(),
-           1e3 * study.tool.diameter, study.tool.shape == ToolShape::ball ? "ball end" : "end mill", study.tool.teeth,
-           rad_s_to_rpm(study.cut.spindle_speed), 1e3 * study.cut.feed_per_tooth, 1e3 * step_over_of(study.cut));
+      said("; feed %.3g mm a tooth, step-over %.3g mm", 1e3 * cut.feed_per_tooth, 1e3 * step_over_of(cut));
   const auto angle = [&](const char* name, double value) {
     if (value != 0.0) text += said(", %s %.3g°", name, rad_to_deg(value));
   };
-  angle("tilt", study.cut.tilt), angle("lead", study.cut.lead);
+  angle("tilt", cut.tilt), angle("lead", cut.lead);
+  return text;
+}
+
+std::string path_text(const SurfaceQuestion& question) {
+  std::string text =
+      said(" along %s, from X %.4g, Y %.4g mm on, without vibration", question.path.filename().string().c_str(),
+           1e3 * question.corner->first, 1e3 * question.corner->second);
+  return question.less_envelope ? text + "; less what the ball's body alone would leave" : text;
+}
+
+std::string head_text(const StudiedSurface& study) {
+  const SurfaceQuestion& question = study.question;
+  std::string text = said("%g x %g mm%s%s by a %g mm %s, %d teeth", 1e3 * question.along, 1e3 * question.across,
+                          study.material.empty() ? "" : " of ", study.material.c_str(), 1e3 * study.tool.diameter,
+                          study.tool.shape == ToolShape::ball ? "ball end" : "end mill", study.tool.teeth);
+  text += question.path.empty() ? said(", %.0f rpm", rad_s_to_rpm(study.cut.spindle_speed)) + passes_text(study.cut)
+                                : path_text(question);
   text += "\ngrid of " + std::to_string(study.cells.along) + " x " + std::to_string(study.cells.across) + " cells, " +
           spacing_text(question.along / static_cast<double>(study.cells.along),
                        question.across / static_cast<double>(study.cells.across));
@@ -139,6 +152,11 @@ nlohmann::ordered_json surface_json(const StudiedSurface& study, const MeasuredS
   object["profile"] = profile_name(study);
   object["form"] = question.roughness.form == SurfaceForm::linear ? "linear" : "quadratic";
   object["cutoff_mm"] = finite_or_null(question.roughness.cutoff > 0.0 ? 1e3 * question.roughness.cutoff : NAN);
+  object["path"] = nullptr;
+  if (!question.path.empty())
+    object["path"] = {{"file", question.path.filename().string()},
+                      {"corner_mm", {1e3 * question.corner->first, 1e3 * question.corner->second}},
+                      {"less_envelope", question.less_envelope}};
   object["size_mm"] = {1e3 * question.along, 1e3 * question.across};
   object["grid"] = {study.cells.along, study.cells.across};
   object["spacing_um"] = {kUm * question.along / static_cast<double>(study.cells.along),

@@ -15,6 +15,7 @@
 #include "models/surface_resampling.hpp"
 #include "models/surface_vibration.hpp"
 #include "tools/cell_posture.hpp"
+#include "tools/path_surface_study.hpp"
 #include "tools/tasks_on_threads.hpp"
 
 namespace stillcut {
@@ -79,18 +80,6 @@ ToolOverSurface vibrating_tool(const Cell& cell, const SurfaceWatch& watch, Stud
   }
 }
 
-Workers workers_of(int threads, const SurfaceWatch& watch) {
-  return [threads, &watch](std::size_t count, const std::function<void(std::size_t)>& task) {
-    std::atomic<std::size_t> done{0};
-    const auto counted = [&](std::size_t i) {
-      task(i);
-      ++done;
-    };
-    run_tasks(count, threads, counted,
-              [&] { watch("surface", static_cast<double>(done) / static_cast<double>(count)); });
-  };
-}
-
 GridSize cells_of(const HeightMap& map) { return {map.along - 1, map.across - 1}; }
 
 // The fewest that show feed marks and scallops.
@@ -113,7 +102,7 @@ std::string grid_text(const GridSize& cells) {
 class Sweeper {
  public:
   Sweeper(const Cut& cut, const SurfaceQuestion& question, const SurfaceWatch& watch)
-      : cut_{cut}, question_{question}, workers_{workers_of(question.threads, watch)} {}
+      : cut_{cut}, question_{question}, workers_{watched_workers(question.threads, watch)} {}
 
   [[nodiscard]] HeightMap swept(const ToolOverSurface& tool, const GridSize& cells) const {
     HeightMap map = uncut_map(question_.along, question_.across, cells.along, cells.across);
@@ -218,6 +207,18 @@ double interval_of(const HeightMap& map, ProfileDirection direction) {
 
 }  // namespace
 
+Workers watched_workers(int threads, const SurfaceWatch& watch) {
+  return [threads, &watch](std::size_t count, const std::function<void(std::size_t)>& task) {
+    std::atomic<std::size_t> done{0};
+    const auto counted = [&](std::size_t i) {
+      task(i);
+      ++done;
+    };
+    run_tasks(count, threads, counted,
+              [&] { watch("surface", static_cast<double>(done) / static_cast<double>(count)); });
+  };
+}
+
 SurfaceFigures surface_figures(const HeightMap& map, ProfileDirection profile, const RoughnessSettings& settings) {
   return {.profiles = mean_roughness(map, profile, settings),
           .area = areal_roughness(map, settings),
@@ -241,6 +242,10 @@ StudiedSurface study_surface(const Cell& cell, const SurfaceQuestion& question, 
   study.tool = require(cell, cell.tool, "tool");
   study.cut = require(cell, cell.cut, "cut");
   if (cell.material) study.material = cell.material->name;
+  if (!question.path.empty()) {
+    study_path_surface(watch, study);
+    return study;
+  }
   try {
     ToolOverSurface still{.motion = cutter_motion(study.tool, study.cut), .passes = {}};
     still.passes = passes_over(still.motion, study.cut, question.along, question.across);

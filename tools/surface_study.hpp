@@ -9,10 +9,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/files/cell.hpp"
 #include "models/height_map.hpp"
+#include "models/surface_refinement.hpp"
 #include "models/surface_roughness.hpp"
 #include "models/surface_texture.hpp"
 
@@ -34,6 +36,10 @@ struct SurfaceQuestion {
   double force_noise = 0.02;
   std::uint64_t seed = 1;
   int threads = 1;
+  // A tool path to sweep, in workpiece axes, instead of the cell's passes; without vibration.
+  std::filesystem::path path;                       // empty: none
+  std::optional<std::pair<double, double>> corner;  // m, workpiece X and Y where its surface begins; empty: its middle
+  bool less_envelope = false;  // what the ball's body alone would leave along it is taken off before the form
 };
 
 struct SurfaceFigures {
@@ -77,6 +83,9 @@ using SurfaceWatch = std::function<void(const char* task, double share)>;
 // threads.
 [[nodiscard]] StudiedSurface study_surface(const Cell& cell, const SurfaceQuestion& question,
                                            const SurfaceWatch& watch);
+
+// Threads for a sweep that is watched.
+[[nodiscard]] Workers watched_workers(int threads, const SurfaceWatch& watch);
 
 // Throws std::invalid_argument where too little is known, and for a cutoff that the filter refuses.
 [[nodiscard]] SurfaceFigures surface_figures(const HeightMap& map, ProfileDirection profile,

@@ -4,11 +4,17 @@
 
 namespace stillcut::surface_study {
 
+namespace {
+
+constexpr double kStrip = 80e-3 / 9.0, kQuarter = 25e-3;  // m
+
+}  // namespace
+
 std::array<double, 3> area_place(std::size_t area) {
-  constexpr double kStrip = 80e-3 / 9.0, kQuarter = 25e-3;
-  const auto& published = kPublished.at(area);
-  return {kQuarter * static_cast<double>(1 + area % 3), kStrip * (published.of_case - 0.5), 0.0};
+  return {kQuarter * static_cast<double>(1 + area % 3), case_middle(kPublished.at(area).of_case)[1], 0.0};
 }
+
+std::array<double, 3> case_middle(int number) { return {2.0 * kQuarter, kStrip * (number - 0.5), 0.0}; }
 
 std::vector<Mode> modes_of(const AreaModes& modes, double stiffness) {
   const double w = kTwoPi * modes.frequency_hz;
@@ -31,9 +37,9 @@ DynamicsMap area_map(const AreaModes& modes, const std::array<double, kAreas>& s
   return map;
 }
 
-std::vector<Mode> predicted_modes(const DynamicsMap& map, std::size_t area) {
+std::vector<Mode> modes_at(const DynamicsMap& map, const std::array<double, 3>& place) {
   Posture at;
-  at.position = area_place(area);
+  at.position = place;
   return predict_posture(map, at, {}).posture.modes;
 }
 

@@ -12,6 +12,7 @@ namespace stillcut::surface_study {
 // Where the areas lie on the workpiece of 100 x 80 mm is not printed either: nine strips along X, one above the other,
 // the areas a quarter, a half and three quarters along theirs, away from the robot's base from A to C and D to F.
 [[nodiscard]] std::array<double, 3> area_place(std::size_t area);  // m
+[[nodiscard]] std::array<double, 3> case_middle(int number);       // m, of a case's strip
 
 // As in eq. 24 one mode a direction, the same for the three: frequency and damping are the map's, the stiffness an
 // area's own.
@@ -24,7 +25,10 @@ struct AreaModes {
 [[nodiscard]] DynamicsMap area_map(const AreaModes& modes, const std::array<double, kAreas>& stiffness,
                                    std::optional<std::size_t> left_out = {});
 
-// What the map says of an area that it has not: inverse distance weighting (eqs 16-18) of modal parameters.
-[[nodiscard]] std::vector<Mode> predicted_modes(const DynamicsMap& map, std::size_t area);
+// What the map says of a place: inverse distance weighting (eqs 16-18) of modal parameters.
+[[nodiscard]] std::vector<Mode> modes_at(const DynamicsMap& map, const std::array<double, 3>& place);
+[[nodiscard]] inline std::vector<Mode> predicted_modes(const DynamicsMap& map, std::size_t area) {
+  return modes_at(map, area_place(area));
+}
 
 }  // namespace stillcut::surface_study

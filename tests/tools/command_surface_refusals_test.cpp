@@ -98,7 +98,7 @@ TEST(SurfaceCommandRefuses, OptionsThatCannotBe) {
     usage({"--grid", grid}, "'" + grid + "' is not ALONGxACROSS the feed in cells");
   usage({"--resample", "2x100"}, "in points");
   usage({"--profile", "aslant"}, "{across,along}");
-  usage({"--form", "round"}, "{linear,quadratic}");
+  usage({"--form", "round"}, "{linear,quadratic,envelope}");
   usage({"--cutoff", "-1"}, "--cutoff");
   usage({"--json", "--csv", "-"}, "standard output");
   const auto input = [&](std::initializer_list<std::string> more, const std::string& starts, const std::string& names) {
@@ -135,6 +135,17 @@ TEST(SurfaceCommandRefuses, AsksForTheMapOnlyWhereTheToolVibrates) {
   EXPECT_EQ(cell.surface({"--no-vibration", "--size", "0.1x0.1", "--grid", "20x20"}).exit_code, 0);
   expect_surface_refusal(cell.surface({"--size", "0.1x0.1"}), 3, "cell.toml:", "map");
   EXPECT_THAT(cell.surface({"--help"}).out, HasSubstr("Examples: "));
+}
+
+TEST(SurfaceRefusesPaths, WithTheFileAndTheLine) {
+  const SurfaceCell cell;
+  (void)cell.write("unknown.cls", "FEDRAT/MMPM,500\nGOTO/0,0,0\nWARP/9\nGOTO/5,0,0\n");
+  expect_surface_refusal(cell.surface({"--path", "unknown.cls", "--json"}), 3, "unknown.cls:3: ", "WARP");
+  (void)cell.write("short.cls", "FEDRAT/MMPM,500\nSPINDL/RPM,6000,CLW\nGOTO/0,0,0\nGOTO/5,0,0\n");
+  expect_surface_refusal(cell.surface({"--path", "short.cls", "--corner", "90x90", "--json"}), 3,
+                         "short.cls: ", "does not come to the rectangle");
+  expect_surface_refusal(cell.surface({"--corner", "1x1"}), 2, "--path: ", "tool path");
+  expect_surface_refusal(cell.surface({"--form", "envelope"}), 2, "--path: ", "tool path");
 }
 
 }  // namespace

@@ -156,11 +156,34 @@ TEST(SurfaceCommand, WarnsOutsideTheMap) {
   const SurfaceCell cell;
   cell.make_quick();
   const Finished done =
-      cell.surface({"--size", "0.2x0.2", "--grid", "20x20", "--posture", "90,-75,105,0,60,0", "--json"});
+      cell.surface({"--size", "0.2x0.2", "--grid", "20x20", "--posture", "900,400,0", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.err, StartsWith("stillcut: cell.toml: "));
   EXPECT_THAT(done.err, HasSubstr("the vibration is an extrapolation\n"));
   EXPECT_EQ(Json::parse(done.out)["warnings"].size(), 1u);
+}
+
+// Rows 0.4 mm apart over a plane that rises by a tenth: scallops of the ball, less the slope. Breaks with a path that
+// is read in other units, a rectangle elsewhere, or a form that stays.
+TEST(SurfaceCommand, AToolPathLeavesTheScallopsOfItsRows) {
+  const SurfaceCell cell;
+  cell.make_simple();
+  std::string path = "UNITS/MM\nSPINDL/RPM,6000,CLW\nFEDRAT/MMPM,1200\n";
+  for (int row = 0; row < 9; ++row) {
+    const std::string y = std::to_string(0.4 * row);
+    path += "RAPID\nGOTO/-5," + y + ",5\nGOTO/-5," + y + ",-0.5,0.3,0,0.95\n";
+    path += "GOTO/9," + y + ",0.9,0.3,0,0.95\nRAPID\nGOTO/9," + y + ",5\n";
+  }
+  (void)cell.write("rows.cls", path);
+  const Json json = answered(
+      cell.surface({"--path", "rows.cls", "--size", "0.3x1.6", "--grid", "60x160", "--corner", "1x0.8", "--json"}));
+  EXPECT_NEAR(json["ra_um"].get<double>(), arc_ra_um(0.4), 0.03 * arc_ra_um(0.4));
+  EXPECT_EQ(json["path"]["file"], "rows.cls");
+  EXPECT_EQ(json["form"], "quadratic");
+  EXPECT_TRUE(json["vibration"].is_null());
+  const Json teeth = answered(cell.surface({"--path", "rows.cls", "--size", "0.3x1.6", "--grid", "60x160", "--corner",
+                                            "1x0.8", "--form", "envelope", "--json"}));
+  EXPECT_LT(teeth["ra_um"].get<double>(), 0.3 * json["ra_um"].get<double>());
 }
 
 }  // namespace

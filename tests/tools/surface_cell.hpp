@@ -24,6 +24,7 @@ class SurfaceCell : public TempFolder {
 
   // So that the tool's vibration is simulated in no time: modes that settle soon, and a shallow cut with a fast feed.
   void make_quick() const {
+    (void)write("map/postures.csv", "posture,x_mm,y_mm,z_mm\nA,25,40,0\nB,50,40,0\nC,75,40,0\n");
     (void)write("map/modes.csv",
                 "posture,mode,frequency_hz,damping_ratio,stiffness_n_per_m,ux,uy,uz\n"
                 "A,1,620,0.03,1.4e6,0.90,0.10,0.42\nA,2,840,0.03,1.6e6,0.05,0.97,0.24\n"
