@@ -2,6 +2,7 @@
 // its tooth's angle phi, so that placing an edge takes no sine of each point.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,14 +11,10 @@
 
 namespace stillcut {
 
-struct EdgeRows {
-  struct Axis {
-    std::vector<double> fixed, sine, cosine;
-  };
-  Axis x, y, z;  // x and y in points of a map, z in m
-
-  [[nodiscard]] std::size_t size() const { return z.fixed.size(); }
+struct EdgeAxis {
+  std::vector<double> fixed, sine, cosine;
 };
+using EdgeRows = std::array<EdgeAxis, 3>;  // x and y in points of a map, z in m
 
 // The points of an edge of this tool as it is inclined, from the tool's position on its path, for a map of these
 // spacings.

@@ -63,8 +63,9 @@ SurfaceMilling::SurfaceMilling(SurfaceMillingSetup setup, Stock& stock, Structur
   }
   ahead_ = edge_rows(setup_.motion, ahead, stock.map.spacing_along, stock.map.spacing_across);
   nodes_ = edge_rows(setup_.motion, points, stock.map.spacing_along, stock.map.spacing_across);
-  const std::vector<double> blank(nodes_.size());
-  before_.assign(static_cast<std::size_t>(tool.teeth), {blank, blank, blank, 0, static_cast<int>(nodes_.size())});
+  const std::vector<double> blank(nodes_[0].fixed.size());
+  before_.assign(static_cast<std::size_t>(tool.teeth),
+                 {blank, blank, blank, 0, static_cast<int>(nodes_[0].fixed.size())});
   after_ = before_;
   probe_ = before_.front();
   --probe_.end;
@@ -163,10 +164,10 @@ void SurfaceMilling::advance() {
       // A node more at each end, where the stock stands between two of them.
       EdgeRow& row = after_[tooth];
       row.begin = std::max(0, cutting.begin - 1);
-      row.end = std::min(static_cast<int>(nodes_.size()), cutting.end + 2);
+      row.end = std::min(static_cast<int>(nodes_[0].fixed.size()), cutting.end + 2);
       canvas_.sweep(before_[tooth], row, std::numeric_limits<double>::infinity());
       row.begin = 0;
-      row.end = static_cast<int>(nodes_.size());
+      row.end = static_cast<int>(nodes_[0].fixed.size());
     }
     std::swap(before_[tooth], after_[tooth]);
   }

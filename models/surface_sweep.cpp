@@ -7,8 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "models/multiversion.hpp"
-
 namespace stillcut {
 namespace {
 
@@ -17,12 +15,6 @@ constexpr double kMostStepsATurn = 1e7;  // a turn: finer than any grid that fit
 // Turns are cut in this order: every 16th, what is left of every 4th, the rest. The surface is then nearly finished
 // early and most of the later patches are seen to lie above it. The order changes nothing else: a minimum is one.
 constexpr std::array<std::int64_t, 3> kStrides{16, 4, 1};
-
-// [begin, end) of `out` becomes fixed + sine * s + cosine * c + beside.
-STILLCUT_MULTIVERSION void combine(const double* fixed, const double* sine, const double* cosine, double s, double c,
-                                   double beside, double* out, int begin, int end) {
-  for (int i = begin; i < end; ++i) out[i] = (fixed[i] + sine[i] * s) + (cosine[i] * c + beside);
-}
 
 // Edge points at most `spacing` apart, from the tip upward, as far as they come within `low` of the surface when the
 // tool turns.
@@ -87,21 +79,9 @@ SurfaceSweep::SurfaceSweep(CutterMotion motion, const Cut& cut, double spacing_a
 void SurfaceSweep::place_edge_points(double spacing) {
   const std::vector<EdgePoint> points = edge_points(motion_, spacing, swept_.highest + swept_.beside.z());
   const Eigen::Vector3d scale(1.0 / spacing_along_, 1.0 / spacing_across_, 1.0);
+  points_ = edge_rows(motion_, points, spacing_along_, spacing_across_);
   double radius = 0.0;
-  for (const EdgePoint& point : points) {
-    radius = std::max(radius, point.radius);
-    const Eigen::Vector3d sine = point.radius * Eigen::Vector3d(std::cos(point.lag), std::sin(point.lag), 0.0),
-                          cosine = point.radius * Eigen::Vector3d(-std::sin(point.lag), std::cos(point.lag), 0.0);
-    const Eigen::Vector3d in_map =
-        motion_.orientation.col(2) * point.height + motion_.height * Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d sine_in_map = motion_.orientation * sine, cosine_in_map = motion_.orientation * cosine;
-    for (int i = 0; i < 3; ++i) {
-      Axis& axis = points_[static_cast<std::size_t>(i)];
-      axis.fixed.push_back(in_map[i] * scale[i]);
-      axis.sine.push_back(sine_in_map[i] * scale[i]);
-      axis.cosine.push_back(cosine_in_map[i] * scale[i]);
-    }
-  }
+  for (const EdgePoint& point : points) radius = std::max(radius, point.radius);
   const double travel =
       kTwoPi * (radius + motion_.tool.runout +
                 (motion_.feed_rate + motion_.displacement.speed) / motion_.spindle_speed);  // m a turn
@@ -109,13 +89,9 @@ void SurfaceSweep::place_edge_points(double spacing) {
   if (!(steps < kMostStepsATurn)) throw std::invalid_argument("grid: too fine for this tool");
   steps_per_turn_ = std::max<std::int64_t>(8, static_cast<std::int64_t>(steps));
 
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < knot_count(points.size()); ++k) {
-      const std::size_t n = knot_point(k, points.size());
-      knots_[i].fixed.push_back(points_[i].fixed[n]);
-      knots_[i].sine.push_back(points_[i].sine[n]);
-      knots_[i].cosine.push_back(points_[i].cosine[n]);
-    }
+  std::vector<EdgePoint> knots(knot_count(points.size()));
+  for (std::size_t k = 0; k < knots.size(); ++k) knots[k] = points[knot_point(k, points.size())];
+  knots_ = edge_rows(motion_, knots, spacing_along_, spacing_across_);
   const double turn = kSheetSteps * kTwoPi / static_cast<double>(steps_per_turn_);
   // The feed is even; what the vibration strays from a straight line its speed bounds. An upright end mill's bottom has
   // one height, to the bit; else what rounding takes is far below 1 pm.
@@ -180,7 +156,7 @@ void SurfaceSweep::find_windows() {
       const double phi = kTwoPi * static_cast<double>(at(k)) / static_cast<double>(turn);
       for (int i = ranges_[at(k)].begin; i < ranges_[at(k)].end; ++i) {
         const auto n = static_cast<std::size_t>(i);
-        const auto along = [&](const Axis& axis) {
+        const auto along = [&](const EdgeAxis& axis) {
           return axis.fixed[n] + axis.sine[n] * std::sin(phi) + axis.cosine[n] * std::cos(phi);
         };
         const double x = along(points_[0]), y = along(points_[1]);
@@ -207,7 +183,7 @@ bool SurfaceSweep::touches(const CutterPass& pass, double begun, const Window& w
 
 // The edge at a step, counted from where the tooth's angle was 0 before the pass began: edge_position() for the points
 // or knots that the row asks for.
-void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const Edge& edge,
+void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const EdgeRows& edge,
                          EdgeRow& row) const {
   const double step_angle = kTwoPi / static_cast<double>(steps_per_turn_), tooth_angle = motion_.tooth_angle[tooth];
   const std::int64_t in_turn = (step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_;
@@ -219,13 +195,8 @@ void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t
           Eigen::Vector3d(runout * std::sin(offset), runout * std::cos(offset), motion_.axial_offset[tooth]) +
       displacement_at(motion_, pass.time + time);
   const double x = pass.begin + (pass.reversed ? -1.0 : 1.0) * motion_.feed_rate * time + beside.x();
-  const double s = std::sin(phi), c = std::cos(phi);
-  const auto combined = [&](const Axis& axis, double from, std::vector<double>& out) {
-    combine(axis.fixed.data(), axis.sine.data(), axis.cosine.data(), s, c, from, out.data(), row.begin, row.end);
-  };
-  combined(edge[0], x / spacing_along_, row.x);
-  combined(edge[1], (pass.across + beside.y()) / spacing_across_, row.y);
-  combined(edge[2], beside.z(), row.z);
+  place_row(edge, std::sin(phi), std::cos(phi),
+            {x / spacing_along_, (pass.across + beside.y()) / spacing_across_, beside.z()}, row);
 }
 
 // What a tooth sweeps in a pass.

@@ -13,6 +13,7 @@
 
 #include "models/cutter_envelope.hpp"
 #include "models/cutter_motion.hpp"
+#include "models/edge_rows.hpp"
 #include "models/edge_sheet.hpp"
 #include "models/height_map.hpp"
 #include "models/swept_patches.hpp"
@@ -44,22 +45,18 @@ class SurfaceSweep {
     std::int64_t first = 0, last = 0;
     double low_x = 0.0, high_x = 0.0, low_y = 0.0, high_y = 0.0;
   };
-  struct Axis {
-    std::vector<double> fixed, sine, cosine;  // an edge point is their sum at its tooth's angle
-  };
-  using Edge = std::array<Axis, 3>;  // x and y in points of the map, z in m
   struct Sheet;
   void place_edge_points(double spacing);
   void find_windows();
   [[nodiscard]] std::vector<EdgeRange> low_points() const;
   [[nodiscard]] bool touches(const CutterPass& pass, double begun, const Window& window, const MapTile& tile) const;
-  void place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const Edge& edge, EdgeRow& row) const;
+  void place(const CutterPass& pass, std::size_t tooth, std::int64_t step, const EdgeRows& edge, EdgeRow& row) const;
 
   CutterMotion motion_;
   SweptHeights swept_;
   double spacing_along_, spacing_across_;
   std::int64_t steps_per_turn_ = 0;
-  Edge points_, knots_;
+  EdgeRows points_, knots_;
   std::array<std::vector<double>, 3> sag_;  // of the pieces between knots, in the units of an edge
   std::vector<EdgeRange> ranges_;           // of each step of a turn
   std::vector<Window> windows_;
