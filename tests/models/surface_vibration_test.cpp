@@ -66,7 +66,7 @@ TEST(SurfaceVibration, AStiffStructureBendsInProportion) {
 }
 
 TEST(SurfaceVibration, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
-  VibrationSetup setup = vibration_setup(60, 0.05, 2e6);
+  VibrationSetup setup = vibration_setup(250, 0.05, 5e6);
   setup.force_noise = 0.1;
   const HeightMap first = surface_of(setup), again = surface_of(setup);
   EXPECT_EQ(first.heights, again.heights);
@@ -90,7 +90,7 @@ TEST(SurfaceVibration, PassesAreMilledTowardTheStock) {
 
 // However much the tool vibrates, no pass is left out that could still cut: half as many more change nothing.
 TEST(SurfaceVibration, NoPassIsMissing) {
-  VibrationSetup setup = vibration_setup(60, 0.05, 1e6);
+  VibrationSetup setup = vibration_setup(250, 0.05, 3e6);
   setup.force_noise = 0.3;
   const VibratingCutter cutter = vibrating_cutter(setup, 0.2e-3, 0.2e-3);
   const auto needed = passes_over(cutter.motion, setup.cut, 0.2e-3, 0.2e-3);
