@@ -10,6 +10,7 @@
 
 #include "models/path_surface.hpp"
 #include "models/surface_refinement.hpp"
+#include "models/surface_vibration.hpp"
 #include "tools/tasks_on_threads.hpp"
 
 namespace {
@@ -137,8 +138,29 @@ void path(benchmark::State& state) {
   state.counters["of_flat"] = curved / flat;
 }
 
+// Passes milled in time; `real_time`: seconds of cutting a second.
+void vibration(benchmark::State& state) {
+  const PaperCut paper;
+  VibrationSetup setup{.tool = paper.tool, .material = {}, .cut = paper.cut, .modes = {}, .force_noise = 0.0};
+  setup.tool.runout = 20e-6;
+  setup.tool.axial_runout = 5e-6;
+  setup.material = {
+      .name = "", .ktc = 1661.8e6, .krc = 1240.8e6, .kac = 19.1e6, .kte = 7.1e3, .kre = 15.9e3, .kae = 2.3e3};
+  const double w = kTwoPi * 64.0;
+  setup.modes = {{w, 0.05, 5e6, {1, 0, 0}}, {w, 0.05, 5e6, {0, 1, 0}}, {w, 0.05, 5e6, {0, 0, 1}}};
+  const CutterMotion motion = cutter_motion(setup.tool, setup.cut);
+  const auto passes = passes_over(motion, setup.cut, 2e-3, 0.5e-3);
+  double cut = 0.0;
+  for (auto unused : state) {
+    benchmark::DoNotOptimize(vibrating_passes(setup, passes).peak);
+    for (const CutterPass& pass : passes) cut += pass.length / motion.feed_rate;
+  }
+  state.counters["real_time"] = benchmark::Counter(cut, benchmark::Counter::kIsRate);
+}
+
 }  // namespace
 
+BENCHMARK(vibration)->Unit(benchmark::kMillisecond);
 BENCHMARK(surface)
     ->ArgNames({"mm", "um", "threads", "spoilt"})
     ->Args({2, 4, 1, 0})
