@@ -124,8 +124,8 @@ ComplexValues receptance_at_shifted_lines(std::span<const double> frequencies_hz
 }
 
 // Sums over the sound hits of all recordings.
-TapSums summed(std::span<const TapRecording> recordings, std::span<const TapHit> hits, const TapSettings& settings,
-               std::size_t length, std::size_t lines, double decay) {
+TapSums summed_over_hits(std::span<const TapRecording> recordings, std::span<const TapHit> hits,
+                         const TapSettings& settings, std::size_t length, std::size_t lines, double decay) {
   const double rate = recordings.front().sample_rate_hz;
   const std::size_t before = samples_before(settings, rate);
   const TapWindows windows = tap_windows(settings, rate, length, decay);
@@ -199,7 +199,7 @@ TapEstimate estimate_taps(std::span<const TapRecording> recordings, const TapSet
     result.h1.frequencies_hz.push_back(static_cast<double>(i + 1) * result.resolution_hz);
   result.h2.frequencies_hz = result.hv.frequencies_hz = result.h1.frequencies_hz;
 
-  const TapSums sums = summed(recordings, result.hits, settings, length, lines, result.added_decay_per_s);
+  const TapSums sums = summed_over_hits(recordings, result.hits, settings, length, lines, result.added_decay_per_s);
   if (sums.hits == 0) refuse_all(recordings, result, settings);
   result.hits_used = sums.hits;
   for (const double power : sums.force_power)
