@@ -91,10 +91,11 @@ const char* profile_name(const StudiedSurface& study) {
 std::string head_text(const StudiedSurface& study) {
   const SurfaceQuestion& question = study.question;
   std::string text =
-      said("%g x %g mm%s%s by a %g mm %s, %d teeth, %.0f rpm; feed %.3g mm a tooth, step-over %.3g mm",
+      said("%g x %g mm%s%s by a %g mm %s, %d %s, %.0f rpm; feed %.3g mm a tooth, step-over %.3g mm",
            1e3 * question.along, 1e3 * question.across, study.material.empty() ? "" : " of ", study.material.c_str(),
            1e3 * study.tool.diameter, study.tool.shape == ToolShape::ball ? "ball end" : "end mill", study.tool.teeth,
-           rad_s_to_rpm(study.cut.spindle_speed), 1e3 * study.cut.feed_per_tooth, 1e3 * step_over_of(study.cut));
+           study.tool.teeth == 1 ? "tooth" : "teeth", rad_s_to_rpm(study.cut.spindle_speed),
+           1e3 * study.cut.feed_per_tooth, 1e3 * step_over_of(study.cut));
   const auto angle = [&](const char* name, double value) {
     if (value != 0.0) text += said(", %s %.3g°", name, rad_to_deg(value));
   };
