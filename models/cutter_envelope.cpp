@@ -13,7 +13,7 @@ namespace {
 constexpr double kBall = 0.5 * std::numbers::pi;  // kappa where the ball ends and the shank begins
 
 std::string filled_in(const char* format, double a, double b) {
-  char buffer[200];
+  char buffer[240];
   (void)std::snprintf(buffer, sizeof buffer, format, a, b);
   return buffer;
 }
@@ -57,7 +57,14 @@ void check_contact(const CutterMotion& motion, const SweptHeights& swept) {
                   "below %.0f",
                   rad_to_deg(motion.inclination()), 90.0));
   if (motion.tool.shape != ToolShape::ball) return;
-  const double room = kBall - std::asin(std::min(1.0, swept.reach / (0.5 * motion.tool.diameter)));
+  const double radius = 0.5 * motion.tool.diameter;
+  // Then no inclination would do, and the angles are not to blame.
+  if (swept.reach >= radius)
+    throw std::invalid_argument(
+        filled_in("feed, step-over and runout: edges farther from the tip than the ball's radius of %.4g mm could mark "
+                  "the surface, with %.4g mm of feed a turn; lower the largest of them",
+                  1e3 * radius, 1e3 * kTwoPi * motion.feed_rate / motion.spindle_speed));
+  const double room = kBall - std::asin(swept.reach / radius);
   if (motion.inclination() > room)
     throw std::invalid_argument(
         filled_in("tilt and lead: turn the contact by %.1f degrees from the tip onto the shank; the "

@@ -21,7 +21,8 @@ constexpr double kSamplesPerMode = 40;         // a period of the highest mode, 
 constexpr double kSamplesPerTooth = 40;
 constexpr double kRigid = 1e6;  // times as stiff
 constexpr double kTurnsOfMean = 3.0;
-constexpr double kReachRoom = 1.3;  // of the largest displacement that was seen before
+constexpr std::size_t kMostSamples = 50'000'000;  // of 12 bytes
+constexpr double kReachRoom = 1.3;                // of the largest displacement that was seen before
 constexpr int kMostRounds = 4;
 constexpr std::size_t kProgressSamples = 4096;
 
@@ -84,6 +85,10 @@ SurfaceVibration mill(const VibrationSetup& setup, const CutterMotion& motion, s
   const double way = motion.feed_rate * step;  // of a sample
   std::size_t expected = 0;
   for (const CutterPass& pass : passes) expected += static_cast<std::size_t>(std::ceil(pass.length / way)) + 3;
+  if (expected > kMostSamples)
+    throw std::invalid_argument("the passes are too long to be milled in time: " +
+                                std::to_string(std::lround(step * static_cast<double>(expected))) +
+                                " s of cutting; make the surface smaller, or the feed faster");
   Recorder recorder(step, expected);
   const auto total = static_cast<double>(passes.size());
   std::size_t milled = 0;  // samples, run-ins included: the spindle turns on through them
@@ -205,9 +210,7 @@ VibratingCutter vibrating_cutter(const VibrationSetup& setup, double along, doub
   VibratingCutter result{cutter_motion(setup.tool, setup.cut), {}};
   // How much it vibrates is first seen in one pass alone.
   std::vector<CutterPass> passes = passes_over(result.motion, setup.cut, along, across);
-  VibrationSetup trial = setup;
-  trial.progress = {};
-  Eigen::Vector3d reach = vibrating_passes(trial, {passes.front()}).displacement.reach;
+  Eigen::Vector3d reach = vibrating_passes(setup, {passes.front()}).displacement.reach;
   for (int round = 0; round < kMostRounds; ++round) {
     result.motion.displacement.reach = kReachRoom * reach;
     try {

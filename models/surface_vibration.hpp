@@ -29,10 +29,10 @@ struct SurfaceVibration {
 };
 
 // Mills these passes. A ball end (models/surface_milling) takes them in the order that leaves uncut stock on the side
-// the milling kind asks for; an end mill (models/milling_simulation) in the given one, upright and in a cut that does
-// not end: its tilt and lead do not change its force. Each pass has a run-in, in which the structure settles. Throws
-// std::invalid_argument, in words for the user, for what cannot be simulated, std::runtime_error where the motion
-// cannot be continued.
+// the milling kind asks for, a slot as up-milling does: its passes lie side by side; an end mill
+// (models/milling_simulation) in the given one, upright and in a cut that does not end: its tilt and lead do not change
+// its force. Each pass has a run-in, in which the structure settles. Throws std::invalid_argument, in words for the
+// user, for what cannot be simulated, std::runtime_error where the motion cannot be continued.
 [[nodiscard]] SurfaceVibration vibrating_passes(const VibrationSetup& setup, std::vector<CutterPass> passes);
 
 // The cutter as it vibrates, and so many passes that none is missing over 0 to `along`, 0 to `across` (m): how far away

@@ -83,8 +83,20 @@ SurfaceQuestion question_of(const SurfaceOptions& options) {
   return question;
 }
 
+bool writes_to_standard_output(const SurfaceOptions& options) {
+  return options.csv == "-" || options.sdf == "-" || options.stl == "-";
+}
+
 void check_surface_usage(const SurfaceOptions& options) {
   check_output_options(options);
+  const char* taken = options.json ? "--json" : nullptr;
+  for (const auto& [option, file] : {std::pair<const char*, const std::string&>{"--csv", options.csv},
+                                     {"--sdf", options.sdf},
+                                     {"--stl", options.stl}}) {
+    if (file != "-") continue;
+    if (taken != nullptr) throw CLI::ValidationError(option, std::string("cannot share standard output with ") + taken);
+    taken = option;
+  }
   if (!options.relief.empty()) plot::check_picture_name(options.relief);
 }
 
@@ -124,7 +136,7 @@ void surface(const SurfaceOptions& options) {
   if (!options.relief.empty()) write_relief(study.map, surface_title(study), options.relief);
   if (options.json) {
     std::cout << surface_json(study, beside).dump() << '\n';
-  } else if (options.csv != "-") {
+  } else if (!writes_to_standard_output(options)) {
     print_surface(study, beside, std::cout);
   }
 }
@@ -141,7 +153,7 @@ void add_surface_figures_options(CLI::App& command, SurfaceOptions& options) {
   command
       .add_option("--cutoff", options.cutoff_mm,
                   "Gaussian filter's λ_c in mm: longer waves are left out (default: no filter)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e4).description(""));
   command.add_option("--resample", options.resample,
                      "ALONGxACROSS points that the surface is resampled to before all else, bilinear");
   command.add_option("--compare", options.compare, "Measured map, .csv or .sdf: its figures beside the predicted ones");
@@ -170,8 +182,10 @@ void add_surface_command(CLI::App& app) {
   add_surface_figures_options(*command, *options);
   add_output_options(*command, *options, "Write the heights: x_mm,y_mm,z_mm, a row a point",
                      "Draw heights, profiles and spectra");
-  command->add_option("--sdf", options->sdf, "Write the heights as a surface data file, for metrology programs");
-  command->add_option("--stl", options->stl, "Write the surface as triangles in mm, for CAD programs");
+  command->add_option("--sdf", options->sdf,
+                      "Write the heights as a surface data file, for metrology programs; - is standard output");
+  command->add_option("--stl", options->stl,
+                      "Write the surface as triangles in mm, for CAD programs; - is standard output");
   command->add_option("--relief", options->relief, "Draw the surface in three dimensions, to a .svg or .png file");
   command->add_option("--force-noise", options->force_noise, "Variation of the cutting force, rms, relative")
       ->capture_default_str()

@@ -107,9 +107,10 @@ std::string path_text(const SurfaceQuestion& question) {
 
 std::string head_text(const StudiedSurface& study) {
   const SurfaceQuestion& question = study.question;
-  std::string text = said("%g x %g mm%s%s by a %g mm %s, %d teeth", 1e3 * question.along, 1e3 * question.across,
+  std::string text = said("%g x %g mm%s%s by a %g mm %s, %d %s", 1e3 * question.along, 1e3 * question.across,
                           study.material.empty() ? "" : " of ", study.material.c_str(), 1e3 * study.tool.diameter,
-                          study.tool.shape == ToolShape::ball ? "ball end" : "end mill", study.tool.teeth);
+                          study.tool.shape == ToolShape::ball ? "ball end" : "end mill", study.tool.teeth,
+                          study.tool.teeth == 1 ? "tooth" : "teeth");
   text += question.path.empty() ? said(", %.0f rpm", rad_s_to_rpm(study.cut.spindle_speed)) + passes_text(study.cut)
                                 : path_text(question);
   text += "\ngrid of " + std::to_string(study.cells.along) + " x " + std::to_string(study.cells.across) + " cells, " +

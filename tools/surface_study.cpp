@@ -27,10 +27,11 @@ constexpr double kMostPoints = 1e8;
 constexpr double kMostRefinedPoints = 6e6;
 
 // What the models' messages begin with, and the key that a user finds it under.
-constexpr std::array<std::pair<std::string_view, const char*>, 5> kKeys{{
+constexpr std::array<std::pair<std::string_view, const char*>, 6> kKeys{{
     {"tilt and lead: ", "cut.tilt_deg, cut.lead_deg: "},
     {"step-over: ", "cut.step_over_mm: "},
     {"runout: ", "tool.runout_mm: "},
+    {"feed, step-over and runout: ", "cut.feed_per_tooth_mm, cut.step_over_mm, tool.runout_mm: "},
     {"the cutoff ", "--cutoff: "},
     {"grid: ", "--grid: "},
 }};
@@ -158,8 +159,15 @@ void check_grid(const Cell& cell, const StudiedSurface& study) {
   if (points_of(cells) > kMostPoints) {
     std::snprintf(text.data(), text.size(),
                   "--grid: %s cells over %g x %g mm have more than %.0f million points; make the surface smaller with "
-                  "--size, or give a coarser --grid",
-                  grid_text(cells).c_str(), 1e3 * question.along, 1e3 * question.across, 1e-6 * kMostPoints);
+                  "--size, or give a coarser --grid%s",
+                  grid_text(cells).c_str(), 1e3 * question.along, 1e3 * question.across, 1e-6 * kMostPoints,
+                  points_of(needed) > kMostPoints ? " with --allow-coarse" : "");
+    throw InputError(cell.file.string(), 0, text.data());
+  }
+  if (question.points &&
+      static_cast<double>(question.points->along) * static_cast<double>(question.points->across) > kMostPoints) {
+    std::snprintf(text.data(), text.size(), "--resample: %s are more than %.0f million points; ask for fewer",
+                  grid_text(*question.points).c_str(), 1e-6 * kMostPoints);
     throw InputError(cell.file.string(), 0, text.data());
   }
   if (question.allow_coarse || (cells.along >= needed.along && cells.across >= needed.across)) return;

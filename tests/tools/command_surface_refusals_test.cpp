@@ -37,30 +37,33 @@ TEST_P(SurfaceRefuses, WithOneLineThatNamesTheKey) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cells, SurfaceRefuses,
-    ::testing::Values(BadSurfaceCell{"contact_on_the_shank", "tilt_deg = 5.0", "tilt_deg = 85.0",
-                                     "cell.toml: cut.tilt_deg, cut.lead_deg: turn the contact by 85.",
-                                     "cuts the surface alone up to 8"},
-                      BadSurfaceCell{"ball_beside_the_surface", "lead_deg = 10.0", "lead_deg = -90.0",
-                                     "cell.toml: cut.tilt_deg, cut.lead_deg: ", "onto the shank"},
-                      BadSurfaceCell{"tilt_in_no_range", "tilt_deg = 5.0", "tilt_deg = 91.0",
-                                     "cell.toml:28: cut.tilt_deg: ", "-90 to 90"},
-                      BadSurfaceCell{"negative_engagement", "radial_depth_mm = 0.1", "radial_depth_mm = -0.1",
-                                     "cell.toml:23: cut.radial_depth_mm: ", "above 0"},
-                      BadSurfaceCell{"negative_depth", "axial_depth_mm = 0.5", "axial_depth_mm = -0.5",
-                                     "cell.toml:24: cut.axial_depth_mm: ", "above 0"},
-                      BadSurfaceCell{"negative_feed", "feed_per_tooth_mm = 0.025", "feed_per_tooth_mm = -0.025",
-                                     "cell.toml:25: cut.feed_per_tooth_mm: ", "above 0"},
-                      BadSurfaceCell{"step_over_wider_than_the_tool", "tilt_deg = 5.0", "step_over_mm = 9",
-                                     "cell.toml: cut.step_over_mm: 9 mm must be", "less than the 8 mm"},
-                      BadSurfaceCell{"ridges_above_the_stock", "axial_depth_mm = 0.5", "axial_depth_mm = 0.0001",
-                                     "cell.toml: cut.radial_depth_mm: leaves ridges of 0.0003125 mm",
-                                     "axial depth of 0.0001 mm"},
-                      BadSurfaceCell{"no_tool",
-                                     "[tool]\nshape = \"ball\"\ndiameter_mm = 8.0\nteeth = 2\nhelix_deg = 45.0\n"
-                                     "runout_mm = 0.02\naxial_runout_mm = 0.005\n",
-                                     "", "cell.toml: [tool] is missing", "add this section"},
-                      BadSurfaceCell{"no_such_posture", "posture = \"A\"", "posture = \"Z\"",
-                                     "cell.toml: dynamics.posture: ", "not in the map"}),
+    ::testing::Values(
+        BadSurfaceCell{"contact_on_the_shank", "tilt_deg = 5.0", "tilt_deg = 85.0",
+                       "cell.toml: cut.tilt_deg, cut.lead_deg: turn the contact by 85.",
+                       "cuts the surface alone up to 8"},
+        BadSurfaceCell{"ball_beside_the_surface", "lead_deg = 10.0", "lead_deg = -90.0",
+                       "cell.toml: cut.tilt_deg, cut.lead_deg: ", "onto the shank"},
+        BadSurfaceCell{"feed_beyond_the_ball", "feed_per_tooth_mm = 0.025", "feed_per_tooth_mm = 3",
+                       "cell.toml: cut.feed_per_tooth_mm, cut.step_over_mm, tool.runout_mm: edges farther ",
+                       "6 mm of feed a turn"},
+        BadSurfaceCell{"tilt_in_no_range", "tilt_deg = 5.0", "tilt_deg = 91.0",
+                       "cell.toml:28: cut.tilt_deg: ", "-90 to 90"},
+        BadSurfaceCell{"negative_engagement", "radial_depth_mm = 0.1", "radial_depth_mm = -0.1",
+                       "cell.toml:23: cut.radial_depth_mm: ", "above 0"},
+        BadSurfaceCell{"negative_depth", "axial_depth_mm = 0.5", "axial_depth_mm = -0.5",
+                       "cell.toml:24: cut.axial_depth_mm: ", "above 0"},
+        BadSurfaceCell{"negative_feed", "feed_per_tooth_mm = 0.025", "feed_per_tooth_mm = -0.025",
+                       "cell.toml:25: cut.feed_per_tooth_mm: ", "above 0"},
+        BadSurfaceCell{"step_over_wider_than_the_tool", "tilt_deg = 5.0", "step_over_mm = 9",
+                       "cell.toml: cut.step_over_mm: 9 mm must be", "less than the 8 mm"},
+        BadSurfaceCell{"ridges_above_the_stock", "axial_depth_mm = 0.5", "axial_depth_mm = 0.0001",
+                       "cell.toml: cut.radial_depth_mm: leaves ridges of 0.0003125 mm", "axial depth of 0.0001 mm"},
+        BadSurfaceCell{"no_tool",
+                       "[tool]\nshape = \"ball\"\ndiameter_mm = 8.0\nteeth = 2\nhelix_deg = 45.0\n"
+                       "runout_mm = 0.02\naxial_runout_mm = 0.005\n",
+                       "", "cell.toml: [tool] is missing", "add this section"},
+        BadSurfaceCell{"no_such_posture", "posture = \"A\"", "posture = \"Z\"",
+                       "cell.toml: dynamics.posture: ", "not in the map"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // Breaks where the grid that would do is wrong: it is taken at the end.
@@ -99,8 +102,10 @@ TEST(SurfaceCommandRefuses, OptionsThatCannotBe) {
   usage({"--resample", "2x100"}, "in points");
   usage({"--profile", "aslant"}, "{across,along}");
   usage({"--form", "round"}, "{linear,quadratic,envelope}");
-  usage({"--cutoff", "-1"}, "--cutoff");
+  usage({"--cutoff", "-1"}, "not in range 0.000001 to 10000");
   usage({"--json", "--csv", "-"}, "standard output");
+  usage({"--json", "--sdf", "-"}, "standard output");
+  usage({"--csv", "-", "--stl", "-"}, "standard output");
   const auto input = [&](std::initializer_list<std::string> more, const std::string& starts, const std::string& names) {
     expect_surface_refusal(cell.surface(more), 3, starts, names);
   };
@@ -111,6 +116,7 @@ TEST(SurfaceCommandRefuses, OptionsThatCannotBe) {
   input({"--plot", "a.pdf"}, "a.pdf: ", ".svg or .png");
   input({"--relief", "a.pdf"}, "a.pdf: ", ".svg or .png");
   input({"--no-vibration", "--size", "0.1x0.1", "--cutoff", "1", "--json"}, "cell.toml: --cutoff: ", "not be longer");
+  input({"--resample", "1000000x101"}, "cell.toml: --resample: 1000000x101 are more than 100 million", "ask for fewer");
   input({"--posture", "Z"}, "cell.toml: --posture: ", "not in the map");
   input({"--no-vibration", "--size", "0.1x0.1", "--sdf", "/nowhere/a.sdf", "--json"}, "/nowhere/a.sdf: ", "written");
 }
@@ -126,6 +132,15 @@ TEST(SurfaceCommandRefuses, ACutThatIsFarFromStable) {
                    "C,1,620,0.03,1.4e3,1,0,0\nC,2,840,0.03,1.6e3,0,1,0\n");
   expect_surface_refusal(cell.surface({"--size", "0.4x0.4", "--json"}), 3,
                          "cell.toml: the vibration cannot be simulated: ", "; --no-vibration leaves it out");
+}
+
+// Breaks where memory is asked for that the machine may not have: the stock is as fine as the feed.
+TEST(SurfaceCommandRefuses, AStockThatDoesNotFitIntoMemory) {
+  const SurfaceCell cell;
+  cell.change("feed_per_tooth_mm = 0.025", "feed_per_tooth_mm = 0.0001");
+  expect_surface_refusal(cell.surface({"--size", "0.01x0.01", "--grid", "20x20", "--allow-coarse"}), 3,
+                         "cell.toml: the vibration cannot be simulated: the stock around the passes would have more",
+                         "; --no-vibration leaves it out");
 }
 
 // Without vibration the cell need know nothing of the machine; with it, it must.
