@@ -12,8 +12,8 @@ namespace {
 // Bilinear between points, a ball's surface is off by the spacing squared over 8 R: 13 nm of a chip of micrometres at
 // the second bound. Feed marks are far lower than a chip.
 constexpr double kOfFeed = 0.8, kOfRadius = 5e-3;
-constexpr double kMargin = 4.0;      // points
-constexpr double kMostPoints = 1e8;  // 0.8 GB
+constexpr double kMargin = 4.0;           // points
+constexpr double kMostStockPoints = 1e8;  // 0.8 GB
 
 double sphere_height(double radius, double squared_distance) {
   return squared_distance < radius * radius ? radius - std::sqrt(radius * radius - squared_distance)
@@ -52,7 +52,7 @@ Stock stock_for(const Tool& tool, const Cut& cut, std::span<const CutterPass> pa
   map.spacing_along = map.spacing_across = spacing;
   map.along = static_cast<std::size_t>(std::ceil((high_x - low_x + 2.0 * margin) / spacing)) + 1;
   map.across = static_cast<std::size_t>(std::ceil((high_y - low_y + 2.0 * margin) / spacing)) + 1;
-  if (!(static_cast<double>(map.along) * static_cast<double>(map.across) <= kMostPoints))
+  if (!(static_cast<double>(map.along) * static_cast<double>(map.across) <= kMostStockPoints))
     throw std::invalid_argument("the stock around the passes would have more than 100 million points, " +
                                 std::to_string(1e6 * spacing) +
                                 " um apart; make the surface smaller or raise the feed or the step-over");
