@@ -1,7 +1,7 @@
 // The floor that a simulated cut of a ball end leaves along its track: the edges swept (models/surface_sweep) with the
 // motion that the simulation gave the tool. The line is a quarter of the step-over beside the middle, on the left seen
-// along the feed, at most a fortieth of the diameter: in the very middle the tip of an upright ball draws its own motion
-// without any feed marks, and the ridge is the neighbour's as well.
+// along the feed, at most a fortieth of the diameter: in the very middle the tip of an upright ball draws its own
+// motion without any feed marks, and the ridge is the neighbour's as well.
 #pragma once
 
 #include <Eigen/Core>

@@ -160,8 +160,7 @@ TEST(MilledProfile, OfABallIsThatOfItsSurface) {
   const CutTrack track = track_of(f, shaken);
   const double from = 10e-3, spacing = 5e-6;
   const std::vector<double> floor = floor_heights(f.tool, f.cut, track, from, spacing, 160);
-  const CutterMotion motion =
-      cutter_motion(f.tool, f.cut, sampled_displacement(0.0, kTrackStep, track.displacement));
+  const CutterMotion motion = cutter_motion(f.tool, f.cut, sampled_displacement(0.0, kTrackStep, track.displacement));
   HeightMap map{.along = 160,
                 .across = 41,
                 .spacing_along = spacing,

@@ -155,8 +155,7 @@ TEST(SurfaceCommand, TellsPeopleBothSurfacesSideBySide) {
 TEST(SurfaceCommand, WarnsOutsideTheMap) {
   const SurfaceCell cell;
   cell.make_quick();
-  const Finished done =
-      cell.surface({"--size", "0.2x0.2", "--grid", "20x20", "--posture", "900,400,0", "--json"});
+  const Finished done = cell.surface({"--size", "0.2x0.2", "--grid", "20x20", "--posture", "900,400,0", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.err, StartsWith("stillcut: cell.toml: "));
   EXPECT_THAT(done.err, HasSubstr("the vibration is an extrapolation\n"));
