@@ -106,16 +106,20 @@ Eigen::Vector3d displacement_at(const CutterMotion& motion, double time) {
   return motion.from_workpiece * motion.displacement.at(time);
 }
 
+Eigen::Vector3d runout_offset(const Tool& tool, double spindle_angle, double axial_offset) {
+  const double angle = spindle_angle + tool.runout_angle;
+  return {tool.runout * std::sin(angle), tool.runout * std::cos(angle), axial_offset};
+}
+
 Eigen::Vector3d edge_position(const CutterMotion& motion, const CutterPass& pass, std::size_t tooth,
                               const EdgePoint& point, double time) {
   const double spindle = pass.angle + motion.spindle_speed * time;
+  // Eqs 1 and 4 would both turn the edge, in opposite senses: it turns once, clockwise, as the teeth do in
+  // docs/conventions.md.
   const double phi = spindle + motion.tooth_angle[tooth] - point.lag;
-  // The offset of eq. 4 turns with the spindle; its angle is counted like the teeth's, from tooth 0. Eqs 1 and 4 would
-  // both turn the edge, in opposite senses: it turns once, clockwise, as the teeth do in docs/conventions.md.
-  const double offset = spindle + motion.tool.runout_angle, runout = motion.tool.runout;
-  const Eigen::Vector3d in_spindle(point.radius * std::sin(phi) + runout * std::sin(offset),
-                                   point.radius * std::cos(phi) + runout * std::cos(offset),
-                                   point.height + motion.axial_offset[tooth]);
+  const Eigen::Vector3d in_spindle =
+      Eigen::Vector3d(point.radius * std::sin(phi), point.radius * std::cos(phi), point.height) +
+      runout_offset(motion.tool, spindle, motion.axial_offset[tooth]);
   const double travelled = (pass.reversed ? -1.0 : 1.0) * motion.feed_rate * time;
   // Eq. 25 would turn the vibration with the tool, as if it had been solved in axes that rotate. Ours is in workpiece
   // axes: it comes after the turning, and all that is left is the feed's direction.

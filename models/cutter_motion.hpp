@@ -77,6 +77,10 @@ struct CutterMotion {
 // The tool's displacement at a time in map axes, m.
 [[nodiscard]] Eigen::Vector3d displacement_at(const CutterMotion& motion, double time);
 
+// How far runout takes a tooth from where it should be while the spindle stands at an angle (rad, as tooth 0's), in
+// spindle axes, m. The offset of eq. 4 turns with the spindle; its angle is counted like the teeth's, from tooth 0.
+[[nodiscard]] Eigen::Vector3d runout_offset(const Tool& tool, double spindle_angle, double axial_offset);
+
 // A point of tooth `tooth`, `time` s after the pass began: eqs 10 and 27, in map axes.
 [[nodiscard]] Eigen::Vector3d edge_position(const CutterMotion& motion, const CutterPass& pass, std::size_t tooth,
                                             const EdgePoint& point, double time);

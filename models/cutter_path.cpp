@@ -115,10 +115,9 @@ Eigen::Vector3d edge_position(const CutterPath& path, const PathPiece& piece, st
   const BallPose pose = ball_pose(path, piece, elapsed);
   const double spindle = piece.angle + piece.spindle_speed * elapsed;
   const double phi = spindle + path.tooth_angle[tooth] - point.lag;
-  const double offset = spindle + path.tool.runout_angle, runout = path.tool.runout;
-  const Eigen::Vector3d in_spindle(point.radius * std::sin(phi) + runout * std::sin(offset),
-                                   point.radius * std::cos(phi) + runout * std::cos(offset),
-                                   point.height + path.axial_offset[tooth]);
+  const Eigen::Vector3d in_spindle =
+      Eigen::Vector3d(point.radius * std::sin(phi), point.radius * std::cos(phi), point.height) +
+      runout_offset(path.tool, spindle, path.axial_offset[tooth]);
   Eigen::Vector3d at = pose.centre + pose.orientation * in_spindle;
   if (path.displacement.at) at += path.displacement.at(piece.time + elapsed);
   return at;

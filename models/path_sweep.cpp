@@ -192,9 +192,7 @@ void PathSweep::place(std::size_t n, std::size_t tooth, std::int64_t step, const
   const std::int64_t in_turn = (step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_;
   const double phi = spindle == exact ? step_angle * static_cast<double>(in_turn) : spindle + tooth_angle;
   const double s = std::sin(phi), c = std::cos(phi);
-  const double offset = phi - tooth_angle + path_.tool.runout_angle, runout = path_.tool.runout;
-  Eigen::Vector3d beside = pose.centre + o * Eigen::Vector3d(runout * std::sin(offset), runout * std::cos(offset),
-                                                             path_.axial_offset[tooth]);
+  Eigen::Vector3d beside = pose.centre + o * runout_offset(path_.tool, phi - tooth_angle, path_.axial_offset[tooth]);
   if (path_.displacement.at) beside += path_.displacement.at(piece.time + elapsed);
   beside.head<2>() -= origin_;
   const std::array scale{1.0 / spacing_along_, 1.0 / spacing_across_, 1.0};

@@ -77,13 +77,12 @@ SurfaceMilling::SurfaceMilling(SurfaceMillingSetup setup, Stock& stock, Structur
 void SurfaceMilling::place(const EdgeRows& points, double time, const Eigen::Vector3d& displacement, std::size_t tooth,
                            EdgeRow& row) const {
   const CutterMotion& motion = setup_.motion;
-  const double spindle = pass_.angle + motion.spindle_speed * time, offset = spindle + motion.tool.runout_angle;
-  const Eigen::Vector3d runout(motion.tool.runout * std::sin(offset), motion.tool.runout * std::cos(offset),
-                               motion.axial_offset[tooth]);
+  const double spindle = pass_.angle + motion.spindle_speed * time;
   const Eigen::Vector3d beside =
       Eigen::Vector3d(pass_.begin + (pass_.reversed ? -1.0 : 1.0) * motion.feed_rate * time - stock_.origin_x,
                       pass_.across - stock_.origin_y, 0.0) +
-      motion.orientation * runout + motion.from_workpiece * displacement;
+      motion.orientation * runout_offset(motion.tool, spindle, motion.axial_offset[tooth]) +
+      motion.from_workpiece * displacement;
   const double phi = spindle + motion.tooth_angle[tooth];
   place_row(points, std::sin(phi), std::cos(phi), beside.cwiseProduct(to_points_), row);
 }

@@ -189,10 +189,8 @@ void SurfaceSweep::place(const CutterPass& pass, std::size_t tooth, std::int64_t
   const std::int64_t in_turn = (step % steps_per_turn_ + steps_per_turn_) % steps_per_turn_;
   const double phi = step_angle * static_cast<double>(in_turn);
   const double time = (step_angle * static_cast<double>(step) - pass.angle - tooth_angle) / motion_.spindle_speed;
-  const double offset = phi - tooth_angle + motion_.tool.runout_angle, runout = motion_.tool.runout;
   const Eigen::Vector3d beside =
-      motion_.orientation *
-          Eigen::Vector3d(runout * std::sin(offset), runout * std::cos(offset), motion_.axial_offset[tooth]) +
+      motion_.orientation * runout_offset(motion_.tool, phi - tooth_angle, motion_.axial_offset[tooth]) +
       displacement_at(motion_, pass.time + time);
   const double x = pass.begin + (pass.reversed ? -1.0 : 1.0) * motion_.feed_rate * time + beside.x();
   place_row(edge, std::sin(phi), std::cos(phi),
