@@ -40,7 +40,7 @@ struct ResidualTerms {
 struct IdentificationSettings {
   double lowest_hz = 0.0, highest_hz = kInfinity;  // the band that is fitted
   int most_order = 12;                             // of the stabilization chart: pairs of poles an octave
-  std::vector<double> poles_hz;                    // the operator's choice; empty: chosen by the chart
+  std::vector<double> poles_hz{};                  // the operator's choice; empty: chosen by the chart
   PoleMethod method = PoleMethod::lscf;            // what the chart is made of
 };
 

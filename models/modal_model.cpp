@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 
 constexpr double kLargestLogMove = 0.3;
-constexpr double kMostFittedDamping = 0.9;
+constexpr double kMostFittedDamping = 0.4;
 constexpr Index kLinesAtOnce = 256;  // of the table of basis functions: it stays in the processor's cache
 
 // Columns of g, dg/d ln w and dg/d ln zeta of every term, then of inertia and compliance: real parts above imaginary

@@ -16,6 +16,8 @@ constexpr std::size_t kMostTerms = 40;
 constexpr int kMostRounds = 60;
 constexpr int kQuickSteps = 12;  // of a fit that is gone on with anyway
 constexpr int kMostSteps = 40;
+constexpr std::size_t kMostSplit = 3;  // terms
+constexpr double kSplitApart = 0.01;   // half of what close modes are apart
 constexpr double kMostTermDamping = 0.3;
 constexpr double kLeastTermDamping = 2e-5;
 
@@ -57,23 +59,59 @@ bool drop_needless(SelectedModes& modes, const FrfLines& lines) {
   return dropped;
 }
 
-// Where the remainder asks for it most; tells whether it was worth it.
+// What the model leaves over, as lines.
+FrfLines remainder(const ModalModel& model, const FrfLines& lines) {
+  FrfLines rest = lines;
+  const std::vector<Eigen::VectorXcd> left = left_over(model, lines);
+  for (std::size_t e = 0; e < left.size(); ++e) rest.entries[e].values = left[e];
+  return rest;
+}
+
+// With terms at these poles beside the model's own, if that is worth one more mode.
+bool take_if_worth(SelectedModes& modes, const FrfLines& lines, ModalModel model, const std::vector<Pole>& poles) {
+  for (const ModalTerm& term : model_of_poles(poles, remainder(model, lines), modes.weights).terms)
+    model.terms.push_back(term);
+  LikelihoodFit fit = fit_likelihood(std::move(model), lines, modes.weights, kMostSteps);
+  // While others are missing a term may be driven out to stand for them: it goes, and is asked for again.
+  const auto gone =
+      std::erase_if(fit.model.terms, [&](const ModalTerm& term) { return !can_be_mode(term.pole, lines); });
+  if (gone > 0) fit = fit_likelihood(std::move(fit.model), lines, modes.weights, kMostSteps);
+  if (modes.fit.chi_square - fit.chi_square < price_of(modes, kTermParameters)) return false;
+  modes.fit = std::move(fit);
+  return true;
+}
+
+// Two close modes that were fitted as one leave a remainder that a third cannot explain: the terms nearest to it, in
+// half-widths, are tried as two.
+bool split_near(SelectedModes& modes, const FrfLines& lines, const Pole& missing) {
+  const auto half_widths = [&](const ModalTerm& term) {
+    return std::abs(std::log(term.pole.natural_frequency / missing.natural_frequency)) / term.pole.damping_ratio;
+  };
+  std::vector<ModalTerm> terms = modes.fit.model.terms;
+  std::sort(terms.begin(), terms.end(),
+            [&](const ModalTerm& a, const ModalTerm& b) { return half_widths(a) < half_widths(b); });
+  for (std::size_t k = 0; k < std::min(kMostSplit, terms.size()); ++k) {
+    ModalModel without = modes.fit.model;
+    std::erase_if(without.terms, [&](const ModalTerm& term) {
+      return term.pole.natural_frequency == terms[k].pole.natural_frequency && term.root == terms[k].root;
+    });
+    const Pole& pole = terms[k].pole;
+    for (const double apart : {0.5 * pole.damping_ratio, kSplitApart}) {
+      const std::vector<Pole> two{{pole.natural_frequency * (1.0 - apart), pole.damping_ratio},
+                                  {pole.natural_frequency * (1.0 + apart), pole.damping_ratio}};
+      if (take_if_worth(modes, lines, without, two)) return true;
+    }
+  }
+  return false;
+}
+
+// Where the remainder asks for one most; tells whether it was worth it.
 bool add_missing(SelectedModes& modes, const FrfLines& lines) {
   if (modes.fit.model.terms.size() >= kMostTerms) return false;
   const double price = price_of(modes, kTermParameters);
-  const std::vector<Eigen::VectorXcd> left = left_over(modes.fit.model, lines);
-  const std::optional<MissingMode> missing = missing_mode(left, lines, modes.weights);
+  const std::optional<MissingMode> missing = missing_mode(left_over(modes.fit.model, lines), lines, modes.weights);
   if (!missing || missing->gain < 0.5 * price) return false;
-  FrfLines rest = lines;
-  for (std::size_t e = 0; e < left.size(); ++e) rest.entries[e].values = left[e];
-  ModalModel more = modes.fit.model;
-  more.terms.push_back(model_of_poles({missing->pole}, rest, modes.weights).terms.front());
-  LikelihoodFit fit = fit_likelihood(std::move(more), lines, modes.weights, kMostSteps);
-  for (const ModalTerm& term : fit.model.terms)
-    if (!can_be_mode(term.pole, lines)) return false;
-  if (modes.fit.chi_square - fit.chi_square < price) return false;
-  modes.fit = std::move(fit);
-  return true;
+  return take_if_worth(modes, lines, modes.fit.model, {missing->pole}) || split_near(modes, lines, missing->pole);
 }
 
 // Residual terms stay only where they explain something.
