@@ -13,6 +13,7 @@ using Eigen::Index;
 
 constexpr Index kBlock = 64;           // lines that share a median, at least
 constexpr double kBlockGrowth = 0.05;  // of the lines so far: blocks widen with frequency
+constexpr Index kLinesForAmounts = 1024;
 constexpr int kNoiseSteps = 60;
 constexpr double kOutlier = 25.0;      // times the variance: more is no noise, one in 10^11
 constexpr double kLeastShare = 1e-12;  // of the mean square of the values: what counts as none
@@ -64,42 +65,31 @@ Eigen::VectorXd smooth_mean(const Eigen::VectorXd& squares, double least) {
 
 double least_variance(const FrfEntry& entry) { return std::max(kLeastShare * entry.values.cwiseAbs2().mean(), 1e-300); }
 
-// Amounts of the shapes that make the squares most probable: sum of ln v + square/v is least. Multiplicative steps that
-// never make it larger; amounts stay positive.
-Eigen::VectorXd most_probable_variance(const Eigen::VectorXd& squares, const std::vector<Eigen::VectorXd>& shapes,
-                                       double least) {
-  std::vector<double> amounts;
-  const double level = squares.mean();
-  amounts.reserve(shapes.size());
-  for (const Eigen::VectorXd& shape : shapes)
-    amounts.push_back(level / (shape.mean() * static_cast<double>(shapes.size())));
-  Eigen::VectorXd variance(squares.size());
-  const auto mix = [&] {
-    variance.setConstant(least);
-    for (std::size_t k = 0; k < shapes.size(); ++k) variance += amounts[k] * shapes[k];
-  };
-  mix();
+// Amounts of the shapes (columns, a row a line) that make the squares most probable: sum of ln v + square/v is least.
+// Multiplicative steps that never make it larger; amounts stay positive.
+Eigen::VectorXd most_probable_variance(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes, double least) {
+  // Four numbers need no more lines than this.
+  const Index every = std::max<Index>(1, squares.size() / kLinesForAmounts), count = (squares.size() - 1) / every + 1;
+  const Eigen::VectorXd some = squares(Eigen::seqN(0, count, every));
+  const Eigen::MatrixXd parts = shapes(Eigen::seqN(0, count, every), Eigen::all);
+  Eigen::VectorXd amounts =
+      some.mean() / static_cast<double>(parts.cols()) * parts.colwise().mean().cwiseInverse().transpose();
   for (int step = 0; step < kNoiseSteps; ++step) {
-    const Eigen::VectorXd inverse = variance.cwiseInverse();
-    const Eigen::VectorXd pull = squares.cwiseProduct(inverse).cwiseMin(kOutlier).cwiseProduct(inverse);
-    for (std::size_t k = 0; k < shapes.size(); ++k)
-      amounts[k] *= std::sqrt(shapes[k].dot(pull) / shapes[k].dot(inverse));
-    mix();
+    const Eigen::VectorXd inverse = ((parts * amounts).array() + least).inverse();
+    const Eigen::VectorXd pull = some.cwiseProduct(inverse).cwiseMin(kOutlier).cwiseProduct(inverse);
+    amounts.array() *= ((parts.transpose() * pull).array() / (parts.transpose() * inverse).array()).sqrt();
   }
-  return variance;
+  return (shapes * amounts).array() + least;
 }
-
-}  // namespace
-
-namespace {
 
 // Of one entry: `error` is what stands beside the `fitted` values.
 Eigen::VectorXd variance_of(const Eigen::VectorXd& omega, const Eigen::VectorXcd& error, const Eigen::VectorXcd& fitted,
                             double least) {
   const Eigen::VectorXd squares = error.cwiseAbs2();
   const Eigen::VectorXd rising = (omega[omega.size() - 1] / omega.array()).square();
-  const std::vector<Eigen::VectorXd> shapes{Eigen::VectorXd::Ones(squares.size()), rising, rising.cwiseAbs2(),
-                                            fitted.cwiseAbs2().array() + least};
+  Eigen::MatrixXd shapes(squares.size(), 4);
+  shapes << Eigen::VectorXd::Ones(squares.size()), rising, rising.cwiseAbs2(), fitted.cwiseAbs2();
+  shapes.col(3).array() += least;
   const Eigen::VectorXd mixed = most_probable_variance(squares, shapes, least);
   return mixed.cwiseProduct(smooth_mean(squares.cwiseQuotient(mixed), 1e-6)).cwiseMax(least);
 }

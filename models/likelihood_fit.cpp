@@ -12,9 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastChiGain = 1e-3;  // of chi square in a step: a thirtieth of a standard deviation
-constexpr double kSettledShare = 1e-9;  // of chi square itself
-constexpr double kSeenShare = 1e-12;    // of the largest variance: below, an axis is one that no entry shows
+constexpr double kSeenShare = 1e-12;  // of the largest variance: below, an axis is one that no entry shows
 
 // Parameters in units of their own spread, so that the matrix is as well conditioned as it can be; those that no entry
 // shows are left out of it.
@@ -95,19 +93,20 @@ Eigen::Vector3d root_of(const std::vector<FrfEntry>& entries, const Eigen::Vecto
 
 }  // namespace
 
-LikelihoodFit fit_likelihood(ModalModel start, const FrfLines& lines, const FrfWeights& weights, int most_steps) {
+LikelihoodFit fit_likelihood(ModalModel start, const FrfLines& lines, const FrfWeights& weights,
+                             const FitEffort& effort) {
   LikelihoodFit fit{std::move(start), 0.0, {}};
   NormalEquations normal = normal_equations(fit.model, lines, weights);
   double damping = 1e-4;
   bool settled = false;
-  for (int step = 0; step < most_steps && !settled; ++step) {
+  for (int step = 0; step < effort.most_steps && !settled; ++step) {
     const ScaledInformation information(normal.information);
     settled = true;
     for (int attempt = 0; attempt < 12; ++attempt) {
       ModalModel next = moved(fit.model, information.solve(normal.gradient, damping));
       const double chi = chi_square(next, lines, weights);
       if (chi < normal.chi_square) {
-        settled = normal.chi_square - chi < std::max(kLeastChiGain, kSettledShare * chi);
+        settled = normal.chi_square - chi < std::max(effort.least_gain, effort.least_share * chi);
         fit.model = std::move(next);
         damping = std::max(1e-12, 0.1 * damping);
         break;

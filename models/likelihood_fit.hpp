@@ -12,9 +12,16 @@ struct LikelihoodFit {
   Eigen::MatrixXd covariance;  // of the parameters of ModalModel; 0 for those that no entry shows
 };
 
+// When it is near enough: after so many steps, or when chi square falls by less in one, a standard deviation of a
+// figure being 1, or by less than a share of itself.
+struct FitEffort {
+  int most_steps = 40;
+  double least_gain = 1e-3, least_share = 1e-9;
+};
+
 // Levenberg-Marquardt from a start; never farther off than that.
 [[nodiscard]] LikelihoodFit fit_likelihood(ModalModel start, const FrfLines& lines, const FrfWeights& weights,
-                                           int most_steps = 40);
+                                           const FitEffort& effort = {});
 
 // The model with these poles alone that fits best: residue by residue (a linear problem), each as a vector.
 [[nodiscard]] ModalModel model_of_poles(const std::vector<Pole>& poles, const FrfLines& lines,

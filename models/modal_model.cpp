@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "models/multiversion.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -12,26 +14,44 @@ using Eigen::Index;
 
 constexpr double kLargestLogMove = 0.3;
 constexpr double kMostFittedDamping = 0.4;
-constexpr Index kLinesAtOnce = 256;  // of the table of basis functions: it stays in the processor's cache
+constexpr Index kLinesAtOnce = 128;  // of the table of basis functions: it stays in the processor's cache
 
-// Columns of g, dg/d ln w and dg/d ln zeta of every term, then of inertia and compliance: real parts above imaginary
-// ones.
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// sums(c, d) += weighted(n, c) * plain(n, d) over all rows n, for d up to c. `rows` is a multiple of four; sums are of
+// four products each, one after the other.
+STILLCUT_MULTIVERSION void add_products(const double* weighted, const double* plain, std::size_t rows,
+                                        std::size_t width, double* sums) {
+  for (std::size_t n = 0; n < rows; n += 4) {
+    const double *a = weighted + n * width, *b = a + width, *c = b + width, *d = c + width;
+    const double *p = plain + n * width, *q = p + width, *r = q + width, *s = r + width;
+    for (std::size_t row = 0; row < width; ++row) {
+      double* sum = sums + row * width;
+      const double x = a[row], y = b[row], z = c[row], w = d[row];
+      for (std::size_t column = 0; column <= row; ++column)
+        sum[column] += (x * p[column] + y * q[column]) + (z * r[column] + w * s[column]);
+    }
+  }
+}
+
+// Columns of g, dg/d ln w and dg/d ln zeta of every term, then of inertia and compliance; of every line a row of real
+// parts and one of imaginary ones, zero beyond the last line.
 struct BasisTable {
-  Eigen::MatrixXd columns;
+  RowMajor rows;
   Index terms = 0, inertia = -1, compliance = -1;
 
   explicit BasisTable(const ModalModel& model) : terms(static_cast<Index>(model.terms.size())) {
     Index count = 3 * terms;
     if (model.has_inertia) inertia = count++;
     if (model.has_compliance) compliance = count++;
-    columns.resize(2 * kLinesAtOnce, count);
+    rows.resize(2 * kLinesAtOnce, count);
   }
 
   void fill(const ModalModel& model, const FrfLines& lines, Index first, Index count) {
-    if (columns.rows() != 2 * count) columns.resize(2 * count, columns.cols());
+    rows.bottomRows(2 * (kLinesAtOnce - count)).setZero();
     const auto put = [&](Index column, Index n, Complex value) {
-      columns(n, column) = value.real();
-      columns(count + n, column) = value.imag();
+      rows(2 * n, column) = value.real();
+      rows(2 * n + 1, column) = value.imag();
     };
     for (Index r = 0; r < terms; ++r) {
       const Pole& pole = model.terms[static_cast<std::size_t>(r)].pole;
@@ -55,7 +75,7 @@ struct BasisTable {
   // How much of each column an entry has, and which parameter turns it by how much: rows of columns, columns of
   // parameters.
   Eigen::MatrixXd turns(const ModalModel& model, int i, int j) const {
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.cols(), parameter_count(model));
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), parameter_count(model));
     for (Index r = 0; r < terms; ++r) {
       const Eigen::Vector3d& a = model.terms[static_cast<std::size_t>(r)].root;
       const Index p = kTermParameters * r;
@@ -73,7 +93,7 @@ struct BasisTable {
   }
 
   Eigen::VectorXd shares(const ModalModel& model, int i, int j) const {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(columns.cols());
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(rows.cols());
     for (Index r = 0; r < terms; ++r) {
       const Eigen::Vector3d& a = model.terms[static_cast<std::size_t>(r)].root;
       result[3 * r] = a[i] * a[j];
@@ -94,8 +114,10 @@ Index parameter_count(const ModalModel& model) {
 Eigen::VectorXcd pole_response(const Pole& pole, const Eigen::VectorXd& omega) {
   Eigen::VectorXcd result(omega.size());
   for (Index n = 0; n < omega.size(); ++n) {
-    const double s = omega[n] / pole.natural_frequency;
-    result[n] = 1.0 / Complex(1.0 - s * s, 2.0 * pole.damping_ratio * s);
+    // 1/(x + iy), without the care for overflow that a complex division takes
+    const double s = omega[n] / pole.natural_frequency, x = 1.0 - s * s, y = 2.0 * pole.damping_ratio * s;
+    const double scale = 1.0 / (x * x + y * y);
+    result[n] = {x * scale, -y * scale};
   }
   return result;
 }
@@ -140,30 +162,33 @@ double chi_square(const ModalModel& model, const FrfLines& lines, const FrfWeigh
 
 NormalEquations normal_equations(const ModalModel& model, const FrfLines& lines, const FrfWeights& weights) {
   BasisTable table(model);
-  const Index width = table.columns.cols(), count = lines.omega.size();
+  const Index width = table.rows.cols(), count = lines.omega.size();
   const std::size_t entries = lines.entries.size();
-  std::vector<Eigen::MatrixXd> grams(entries, Eigen::MatrixXd::Zero(width, width));
+  std::vector<RowMajor> grams(entries, RowMajor::Zero(width, width));
   std::vector<Eigen::VectorXd> slopes(entries, Eigen::VectorXd::Zero(width));
   std::vector<Eigen::VectorXd> shares;
   shares.reserve(entries);
   for (const FrfEntry& entry : lines.entries) shares.push_back(table.shares(model, entry.response, entry.force));
   NormalEquations result;
-  Eigen::MatrixXd weighted;
-  Eigen::VectorXd rest, root;
+  RowMajor weighted(2 * kLinesAtOnce, width);
+  Eigen::VectorXd rest(2 * kLinesAtOnce), weight(2 * kLinesAtOnce);
   for (Index first = 0; first < count; first += kLinesAtOnce) {
     const Index some = std::min(kLinesAtOnce, count - first);
     table.fill(model, lines, first, some);
     for (std::size_t e = 0; e < entries; ++e) {
-      root.resize(2 * some);
-      root.head(some) = root.tail(some) = weights[e].segment(first, some).cwiseSqrt();
-      rest.resize(2 * some);
-      rest << lines.entries[e].values.segment(first, some).real(), lines.entries[e].values.segment(first, some).imag();
-      rest.noalias() -= table.columns * shares[e];
-      rest.array() *= root.array();
-      weighted = root.asDiagonal() * table.columns;
-      grams[e].selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-      slopes[e].noalias() += weighted.transpose() * rest;
-      result.chi_square += rest.squaredNorm();
+      for (Index n = 0; n < kLinesAtOnce; ++n) {
+        const std::complex<double> value = n < some ? lines.entries[e].values[first + n] : 0.0;
+        weight[2 * n] = weight[2 * n + 1] = n < some ? weights[e][first + n] : 0.0;
+        rest[2 * n] = value.real();
+        rest[2 * n + 1] = value.imag();
+      }
+      rest.noalias() -= table.rows * shares[e];
+      result.chi_square += rest.cwiseAbs2().dot(weight);
+      rest.array() *= weight.array();
+      slopes[e].noalias() += table.rows.transpose() * rest;
+      weighted = weight.asDiagonal() * table.rows;
+      add_products(weighted.data(), table.rows.data(), static_cast<std::size_t>(2 * kLinesAtOnce),
+                   static_cast<std::size_t>(width), grams[e].data());
     }
   }
   const Index parameters = parameter_count(model);

@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::size_t kMostTerms = 40;
 constexpr int kMostRounds = 60;
-constexpr int kQuickSteps = 12;  // of a fit that is gone on with anyway
-constexpr int kMostSteps = 40;
+// Of a fit that is gone on with anyway, and of one that decides whether a mode is worth its price (50 or more).
+constexpr FitEffort kQuick{12, 1.0, 1e-3}, kDeciding{30, 1.0, 1e-4}, kLast{40, 1e-3, 1e-9};
 constexpr std::size_t kMostSplit = 3;  // terms
 constexpr double kSplitApart = 0.01;   // half of what close modes are apart
 constexpr double kMostTermDamping = 0.3;
 constexpr double kLeastTermDamping = 2e-5;
 
-void refit(SelectedModes& modes, const FrfLines& lines, int steps = kQuickSteps) {
-  modes.fit = fit_likelihood(std::move(modes.fit.model), lines, modes.weights, steps);
+void refit(SelectedModes& modes, const FrfLines& lines, const FitEffort& effort = kQuick) {
+  modes.fit = fit_likelihood(std::move(modes.fit.model), lines, modes.weights, effort);
 }
 
 // While modes are still missing.
@@ -71,11 +71,11 @@ FrfLines remainder(const ModalModel& model, const FrfLines& lines) {
 bool take_if_worth(SelectedModes& modes, const FrfLines& lines, ModalModel model, const std::vector<Pole>& poles) {
   for (const ModalTerm& term : model_of_poles(poles, remainder(model, lines), modes.weights).terms)
     model.terms.push_back(term);
-  LikelihoodFit fit = fit_likelihood(std::move(model), lines, modes.weights, kMostSteps);
+  LikelihoodFit fit = fit_likelihood(std::move(model), lines, modes.weights, kDeciding);
   // While others are missing a term may be driven out to stand for them: it goes, and is asked for again.
   const auto gone =
       std::erase_if(fit.model.terms, [&](const ModalTerm& term) { return !can_be_mode(term.pole, lines); });
-  if (gone > 0) fit = fit_likelihood(std::move(fit.model), lines, modes.weights, kMostSteps);
+  if (gone > 0) fit = fit_likelihood(std::move(fit.model), lines, modes.weights, kDeciding);
   if (modes.fit.chi_square - fit.chi_square < price_of(modes, kTermParameters)) return false;
   modes.fit = std::move(fit);
   return true;
@@ -111,7 +111,8 @@ bool add_missing(SelectedModes& modes, const FrfLines& lines) {
   const double price = price_of(modes, kTermParameters);
   const std::optional<MissingMode> missing = missing_mode(left_over(modes.fit.model, lines), lines, modes.weights);
   if (!missing || missing->gain < 0.5 * price) return false;
-  return take_if_worth(modes, lines, modes.fit.model, {missing->pole}) || split_near(modes, lines, missing->pole);
+  return take_if_worth(modes, lines, modes.fit.model, {missing->pole}) ||
+         (missing->gain > price && split_near(modes, lines, missing->pole));
 }
 
 // Residual terms stay only where they explain something.
@@ -124,7 +125,7 @@ void drop_needless_residuals(SelectedModes& modes, const FrfLines& lines) {
     if (!(modes.fit.model.*has)) continue;
     ModalModel less = modes.fit.model;
     less.*has = false;
-    LikelihoodFit fit = fit_likelihood(std::move(less), lines, modes.weights, kMostSteps);
+    LikelihoodFit fit = fit_likelihood(std::move(less), lines, modes.weights, kDeciding);
     if (fit.chi_square - modes.fit.chi_square < price_of(modes, parameters)) modes.fit = std::move(fit);
   }
 }
@@ -174,20 +175,20 @@ SelectedModes select_modes(const FrfLines& lines, const std::vector<Pole>& start
     drop_needless_residuals(modes, lines);
     drop_needless(modes, lines);
   }
-  refit(modes, lines, kMostSteps);
+  refit(modes, lines, kLast);
   return modes;
 }
 
 SelectedModes fit_poles(const FrfLines& lines, const std::vector<Pole>& poles, const FrfWeights& weights) {
   SelectedModes modes = started(lines, poles, weights);
   weigh_roughly(modes, lines);
-  refit(modes, lines, kMostSteps);
+  refit(modes, lines, kLast);
   for (int round = 0; round < 3; ++round) {
     weigh(modes, lines);
     refit(modes, lines);
     drop_needless_residuals(modes, lines);
   }
-  refit(modes, lines, kMostSteps);
+  refit(modes, lines, kLast);
   return modes;
 }
 

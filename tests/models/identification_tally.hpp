@@ -47,7 +47,7 @@ inline std::size_t nearest_of(const std::vector<Mode>& left, const Mode& truth) 
 
 inline void count_modes(IdentificationTally& tally, const MeasuredStructure& structure, const ModalFit& fit,
                         double signal_to_noise_db) {
-  const LikelihoodFit truth = fit_likelihood(model_of(structure.modes), structure.lines, structure.weights, 0);
+  const LikelihoodFit truth = fit_likelihood(model_of(structure.modes), structure.lines, structure.weights, {0, 1.0});
   const AskedAccuracy asked = asked_at(signal_to_noise_db);
   const ModeFigures limits{asked.frequency, asked.damping, asked.stiffness, asked.direction};
   const double price =
