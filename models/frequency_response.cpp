@@ -1,10 +1,12 @@
 #include "models/frequency_response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "dsp/numbers.hpp"
 #include "models/machining.hpp"
+#include "models/sentence.hpp"
 
 namespace stillcut {
 
@@ -30,6 +32,37 @@ void require_sound_response(const FrequencyResponse& response) {
         if (!std::isfinite(value.real()) || !std::isfinite(value.imag()))
           throw std::invalid_argument("a value of a frequency response is not finite");
     }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t force = 0; force < 3; ++force) {
+      const std::vector<double>& coherence = response.coherence[axis][force];
+      if (coherence.empty()) continue;
+      if (response.receptance[axis][force].empty() || coherence.size() != hz.size() ||
+          !std::ranges::all_of(coherence, [](double value) { return value >= 0.0 && value <= 1.0; }))
+        throw std::invalid_argument("coherence must be from 0 to 1, at each frequency of a measured entry");
+    }
+  if (!(response.added_decay_per_s >= 0.0) || !std::isfinite(response.added_decay_per_s))
+    throw std::invalid_argument("the decay that a window added must be from 0 1/s up");
+}
+
+FrequencyResponse joined_responses(std::span<const FrequencyResponse> parts) {
+  if (parts.empty()) throw std::invalid_argument("no frequency response was given");
+  FrequencyResponse joined = parts.front();
+  for (const FrequencyResponse& part : parts.subspan(1)) {
+    if (part.frequencies_hz != joined.frequencies_hz)
+      throw std::invalid_argument("frequencies differ: use the same sample rate and record length for every direction");
+    if (part.added_decay_per_s != joined.added_decay_per_s)
+      throw std::invalid_argument("exponential windows differ: use the same one for every direction");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t force = 0; force < 3; ++force) {
+        if (part.receptance[axis][force].empty()) continue;
+        if (!joined.receptance[axis][force].empty())
+          throw std::invalid_argument(sentence("response ", "xyz"[axis], " to force ", "xyz"[force],
+                                               " was measured twice: give the recordings of a direction together"));
+        joined.receptance[axis][force] = part.receptance[axis][force];
+        joined.coherence[axis][force] = part.coherence[axis][force];
+      }
+  }
+  return joined;
 }
 
 ComplexValues receptance_of(ResponseKind kind, std::span<const double> frequencies_hz,

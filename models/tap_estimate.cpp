@@ -167,7 +167,7 @@ void estimate_axis(const TapSums& sums, std::size_t axis, const TapSettings& set
     h1[i] = settings.force_sense * fx / ff;
     h2[i] = settings.force_sense * xx / std::conj(fx);
     hv[i] = settings.force_sense * fx / std::abs(fx) * std::sqrt(xx / ff);
-    result.coherence[axis].push_back(sums.hits > 1 ? std::norm(fx) / (xx * ff) : kNaN);
+    result.coherence[axis].push_back(sums.hits > 1 ? std::min(1.0, std::norm(fx) / (xx * ff)) : kNaN);
   }
   const auto column = static_cast<std::size_t>(settings.force_axis);
   const auto receptance = [&](ComplexValues accelerance) {
@@ -176,6 +176,9 @@ void estimate_axis(const TapSums& sums, std::size_t axis, const TapSettings& set
   result.h1.receptance[axis][column] = receptance(std::move(h1));
   result.h2.receptance[axis][column] = receptance(std::move(h2));
   result.hv.receptance[axis][column] = receptance(std::move(hv));
+  if (sums.hits > 1)
+    for (FrequencyResponse* response : {&result.h1, &result.h2, &result.hv})
+      response->coherence[axis][column] = result.coherence[axis];
 }
 
 }  // namespace
@@ -197,7 +200,8 @@ TapEstimate estimate_taps(std::span<const TapRecording> recordings, const TapSet
   result.added_decay_per_s = std::log(1.0 / settings.end_weight) * result.resolution_hz;
   for (std::size_t i = 0; i < lines; ++i)
     result.h1.frequencies_hz.push_back(static_cast<double>(i + 1) * result.resolution_hz);
-  result.h2.frequencies_hz = result.hv.frequencies_hz = result.h1.frequencies_hz;
+  result.h1.added_decay_per_s = result.added_decay_per_s;
+  result.h2 = result.hv = result.h1;
 
   const TapSums sums = summed_over_hits(recordings, result.hits, settings, length, lines, result.added_decay_per_s);
   if (sums.hits == 0) refuse_all(recordings, result, settings);

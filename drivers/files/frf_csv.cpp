@@ -8,17 +8,24 @@ namespace {
 
 constexpr std::string_view kEntryAxes = "xyz";
 constexpr const char* kFrequencyColumn = "frequency_hz";
+constexpr const char* kDecayColumn = "added_decay_per_s";
 
 std::string entry_column(std::size_t response, std::size_t force, const char* part) {
   std::string name{'h', '_', kEntryAxes[response], kEntryAxes[force]};
   return name.append(part);
 }
 
+std::string coherence_column(std::size_t response, std::size_t force) {
+  return {std::string("coherence_") + kEntryAxes[response] + kEntryAxes[force]};
+}
+
 std::vector<std::string> all_columns() {
-  std::vector<std::string> names{kFrequencyColumn};
+  std::vector<std::string> names{kFrequencyColumn, kDecayColumn};
   for (std::size_t response = 0; response < 3; ++response)
     for (std::size_t force = 0; force < 3; ++force)
       for (const char* part : {"_re", "_im"}) names.push_back(entry_column(response, force, part));
+  for (std::size_t response = 0; response < 3; ++response)
+    for (std::size_t force = 0; force < 3; ++force) names.push_back(coherence_column(response, force));
   return names;
 }
 
@@ -33,6 +40,34 @@ ComplexValues read_entry(const CsvTable& table, std::size_t response, std::size_
   ComplexValues values;
   for (const CsvRow& row : table.rows()) values.emplace_back(table.number(row, *real), table.number(row, *imaginary));
   return values;
+}
+
+[[noreturn]] void fail_value(const CsvTable& table, const CsvRow& row, std::size_t column, const char* message) {
+  const std::string text = table.text(row, column);
+  table.fail(row, column, "\"" + text + "\" " + message);
+}
+
+std::vector<double> read_coherence(const CsvTable& table, std::size_t response, std::size_t force) {
+  const auto column = table.find_column(coherence_column(response, force));
+  if (!column) return {};
+  std::vector<double> values;
+  for (const CsvRow& row : table.rows()) {
+    values.push_back(table.number(row, *column));
+    if (values.back() < 0.0 || values.back() > 1.0)
+      fail_value(table, row, *column, "is no coherence; must be from 0 to 1");
+  }
+  return values;
+}
+
+// The same in every row: the window is of the whole measurement.
+double read_added_decay(const CsvTable& table) {
+  const auto column = table.find_column(kDecayColumn);
+  if (!column) return 0.0;
+  const double decay = table.number(table.rows().front(), *column);
+  for (const CsvRow& row : table.rows())
+    if (const double value = table.number(row, *column); value != decay || value < 0.0)
+      fail_value(table, row, *column, "must be from 0 up and the same in every row; correct it");
+  return decay;
 }
 
 }  // namespace
@@ -52,7 +87,12 @@ FrequencyResponse parse_frf_csv(std::string_view content, const std::string& fil
   }
   if (table.rows().empty()) throw InputError(file, table.header_line(), "has no row below its header");
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t force = 0; force < 3; ++force) response.receptance[axis][force] = read_entry(table, axis, force);
+    for (std::size_t force = 0; force < 3; ++force) {
+      response.receptance[axis][force] = read_entry(table, axis, force);
+      if (!response.receptance[axis][force].empty())
+        response.coherence[axis][force] = read_coherence(table, axis, force);
+    }
+  response.added_decay_per_s = read_added_decay(table);
   if (measured_entries(response) == 0)
     throw InputError(file, table.header_line(),
                      "has no pair such as h_xx_re,h_xx_im: response and force axis, real and imaginary part in m/N");
@@ -70,6 +110,14 @@ void write_frf_csv(std::ostream& out, const FrequencyResponse& response) {
       header.push_back(entry_column(axis, force, "_im"));
       entries.push_back(&response.receptance[axis][force]);
     }
+  std::vector<const std::vector<double>*> coherences;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t force = 0; force < 3; ++force) {
+      if (response.coherence[axis][force].empty()) continue;
+      header.push_back(coherence_column(axis, force));
+      coherences.push_back(&response.coherence[axis][force]);
+    }
+  if (response.added_decay_per_s > 0.0) header.emplace_back(kDecayColumn);
   write_csv_row(out, header);
   for (std::size_t i = 0; i < response.frequencies_hz.size(); ++i) {
     std::vector<std::string> row{csv_number(response.frequencies_hz[i])};
@@ -77,6 +125,8 @@ void write_frf_csv(std::ostream& out, const FrequencyResponse& response) {
       row.push_back(csv_number((*entry)[i].real()));
       row.push_back(csv_number((*entry)[i].imag()));
     }
+    for (const std::vector<double>* values : coherences) row.push_back(csv_number((*values)[i]));
+    if (response.added_decay_per_s > 0.0) row.push_back(csv_number(response.added_decay_per_s));
     write_csv_row(out, row);
   }
 }

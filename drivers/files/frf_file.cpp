@@ -6,9 +6,11 @@
 #include <optional>
 #include <stdexcept>
 
+#include "drivers/files/csv.hpp"
 #include "drivers/files/frf_csv.hpp"
 #include "drivers/files/input_error.hpp"
 #include "drivers/files/text_file.hpp"
+#include "drivers/files/uff_numbers.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
@@ -16,7 +18,9 @@ namespace {
 
 constexpr double kSameFrequency = 1e-6;  // relative: six digits of a text file
 constexpr double kSameUnit = 1e-3;       // relative
+constexpr double kRoundedCoherence = 1e-6;
 constexpr const char* kAxisNames = "xyz";
+constexpr std::string_view kDecayText = "added decay ";  // in a line of text of a function, then its number and 1/s
 
 struct NamedUnit {
   const char* name;
@@ -41,13 +45,11 @@ class FrfReader {
   FrfReader(const UffFile& content, const std::string& file) : content_(content), file_(file) {}
 
   FrfFile read() {
+    for (const UffFunction& function : content_.functions)
+      if (function.type == kUffFrequencyResponse) add(function);
     std::size_t others = 0;
-    for (const UffFunction& function : content_.functions) {
-      if (function.type == kUffFrequencyResponse)
-        add(function);
-      else
-        ++others;
-    }
+    for (const UffFunction& function : content_.functions)
+      if (function.type != kUffFrequencyResponse && !add_coherence(function)) ++others;
     if (first_ == nullptr) throw InputError(file_, 0, "has no frequency response (function type 4 of dataset 58)");
     if (others > 0)
       result_.notes.push_back(std::to_string(others) + " functions that are no frequency response are left out");
@@ -78,6 +80,41 @@ class FrfReader {
       fail(function, std::string("response ") + kAxisNames[response] + " to force " + kAxisNames[force] +
                          " stands in the file twice; leave one of them");
     entry = receptance_of(kind, hz, values);
+    add_decay(function);
+  }
+
+  // Of an entry that was read; false for any other function.
+  bool add_coherence(const UffFunction& function) {
+    const int response = std::abs(function.response_direction), force = std::abs(function.reference_direction);
+    if (function.type != kUffCoherence || function.complex || first_ == nullptr || response < 1 || response > 3 ||
+        force < 1 || force > 3 || function.abscissa != first_->abscissa)
+      return false;
+    const auto axis = static_cast<std::size_t>(response - 1), column = static_cast<std::size_t>(force - 1);
+    std::vector<double>& coherence = result_.response.coherence[axis][column];
+    if (result_.response.receptance[axis][column].empty() || !coherence.empty()) return false;
+    for (const std::complex<double>& value : function.values) {
+      if (value.real() < 0.0 || value.real() > 1.0 + kRoundedCoherence)
+        fail(function, "a coherence must be from 0 to 1");
+      coherence.push_back(std::min(1.0, value.real()));
+    }
+    return true;
+  }
+
+  // Told in a line of text, as uff_of() writes it.
+  void add_decay(const UffFunction& function) {
+    double decay = 0.0;
+    for (const std::string& text : function.id) {
+      if (!text.starts_with(kDecayText)) continue;
+      const std::optional<double> told = fortran_number(uff_bare(std::string_view(text).substr(
+          kDecayText.size(), std::min(text.find(" 1/s"), text.size()) - kDecayText.size())));
+      if (!told || *told < 0.0)
+        fail(function, "\"" + text + "\" must tell a number from 0 up, in 1/s; correct or remove this line");
+      decay = *told;
+    }
+    if (&function != first_ && decay != result_.response.added_decay_per_s)
+      fail(function, "another exponential window than the function of line " + std::to_string(first_->line) +
+                         "; give files of one measurement");
+    result_.response.added_decay_per_s = decay;
   }
 
   std::size_t axis_of(const UffFunction& function, int direction, const char* name) const {
@@ -172,6 +209,9 @@ class FrfReader {
     for (auto& row : response.receptance)
       for (ComplexValues& entry : row)
         if (!entry.empty()) entry.erase(entry.begin());
+    for (auto& row : response.coherence)
+      for (std::vector<double>& values : row)
+        if (!values.empty()) values.erase(values.begin());
     if (response.frequencies_hz.empty()) fail(*first_, "has no frequency but 0 Hz");
     result_.notes.emplace_back("0 Hz is left out: no displacement follows from velocity or acceleration there");
   }
@@ -202,7 +242,10 @@ UffFile uff_of(const FrequencyResponse& response) {
     for (std::size_t force = 0; force < 3; ++force) {
       if (response.receptance[axis][force].empty()) continue;
       UffFunction function;
-      function.id[0] = std::string("response ") + kAxisNames[axis] + " to force " + kAxisNames[force];
+      const std::string entry = std::string("response ") + kAxisNames[axis] + " to force " + kAxisNames[force];
+      function.id[0] = entry;
+      if (response.added_decay_per_s > 0.0)
+        function.id[1] = std::string(kDecayText) + csv_number(response.added_decay_per_s) + " 1/s, exponential window";
       function.response_node = function.reference_node = 1;
       function.response_direction = static_cast<int>(axis) + 1;
       function.reference_direction = static_cast<int>(force) + 1;
@@ -211,6 +254,15 @@ UffFile uff_of(const FrequencyResponse& response) {
       function.denominator = {kUffExcitationForce, "Force", "N"};
       function.abscissa = response.frequencies_hz;
       function.values = response.receptance[axis][force];
+      content.functions.push_back(function);
+      const std::vector<double>& coherence = response.coherence[axis][force];
+      if (coherence.empty()) continue;
+      function.id[0] = "coherence, " + entry;
+      function.type = kUffCoherence;
+      function.complex = false;
+      function.ordinate = {kUffUnknown, "Coherence", ""};
+      function.denominator = {};
+      function.values.assign(coherence.begin(), coherence.end());
       content.functions.push_back(std::move(function));
     }
   return content;

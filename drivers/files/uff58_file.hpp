@@ -18,10 +18,10 @@ struct UffAxis {
   int data_type = 0;  // kUff…; 0 unknown
   std::string label, units;
 };
-inline constexpr int kUffDisplacement = 8, kUffReactionForce = 9, kUffVelocity = 11, kUffAcceleration = 12,
-                     kUffExcitationForce = 13, kUffFrequency = 18;
+inline constexpr int kUffUnknown = 0, kUffDisplacement = 8, kUffReactionForce = 9, kUffVelocity = 11, kUffAcceleration = 12,
+                     kUffExcitationForce = 13, kUffTime = 17, kUffFrequency = 18;
 
-inline constexpr int kUffFrequencyResponse = 4;  // type of a function
+inline constexpr int kUffTimeResponse = 1, kUffFrequencyResponse = 4, kUffCoherence = 6;  // types of a function
 
 struct UffFunction {
   std::array<std::string, 5> id;  // lines of text, up to 80 characters each

@@ -27,6 +27,12 @@ inline FrequencyResponse random_response(std::mt19937_64& random) {
       if (below(3) == 0)
         for (std::size_t i = 0; i < points; ++i) entry.emplace_back(number(), number());
   if (measured_entries(response) == 0) response.receptance[below(3)][below(3)].assign(points, {number(), number()});
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t force = 0; force < 3; ++force)
+      if (!response.receptance[axis][force].empty() && below(2) == 0)
+        for (std::size_t i = 0; i < points; ++i)
+          response.coherence[axis][force].push_back(std::uniform_real_distribution<>(0.0, 1.0)(random));
+  if (below(2) == 0) response.added_decay_per_s = std::uniform_real_distribution<>(0.1, 9.0)(random);
   return response;
 }
 

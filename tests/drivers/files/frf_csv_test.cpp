@@ -22,6 +22,8 @@ TEST(FrfCsv, ComesBackToTheLastBit) {
     const FrequencyResponse back = parse_frf_csv(out.str(), "a.csv");
     ASSERT_EQ(back.frequencies_hz, response.frequencies_hz);
     ASSERT_EQ(back.receptance, response.receptance) << out.str();
+    ASSERT_EQ(back.coherence, response.coherence) << out.str();
+    ASSERT_EQ(back.added_decay_per_s, response.added_decay_per_s);
   }
 }
 
@@ -46,6 +48,10 @@ TEST(FrfCsv, NamesFileAndLineOfWhatIsWrong) {
       {"frequency_hz,h_xx_re,h_xx_im\n-1,2,3\n", "a.csv:2: frequency_hz: \"-1\" is below 0"},
       {"frequency_hz,h_xx_re,h_xx_im\n1,,3\n", "a.csv:2: h_xx_re: \"\" is no number"},
       {"frequency_hz,h_xx_re,h_xx_im\n1,2,nan\n", "a.csv:2: h_xx_im: \"nan\" is no number"},
+      {"frequency_hz,h_xx_re,h_xx_im,coherence_xx\n1,2,3,1.2\n", "a.csv:2: coherence_xx: \"1.2\" is no coherence"},
+      {"frequency_hz,h_xx_re,h_xx_im,added_decay_per_s\n1,2,3,4\n2,3,4,5\n",
+       "a.csv:3: added_decay_per_s: \"5\" must be from 0 up and the same in every row"},
+      {"frequency_hz,h_xx_re,h_xx_im,added_decay_per_s\n1,2,3,-4\n", "a.csv:2: added_decay_per_s: \"-4\""},
       {"frequency_hz,h_xx_re,h_xx_im\n1,2\n", "a.csv:2: has 2 fields"},
   };
   for (const auto& [text, message] : cases)

@@ -123,6 +123,17 @@ TEST(FrfFile, NamesFileAndLineOfWhatIsWrong) {
   EXPECT_THAT(message([](F& f) { f.abscissa = {20.0, 10.0}; }), HasSubstr("point 2 does not"));
   EXPECT_THAT(message([](F& f) { f.abscissa[1] = 21.0; }), HasSubstr("other frequencies than the function of line 40"));
   EXPECT_THAT(message([](F& f) { f.response_node = 4; }), HasSubstr("nodes 4 and 3, not 3 and 3"));
+  EXPECT_THAT(message([](F& f) { f.id[2] = "added decay 4.6 1/s"; }),
+              HasSubstr("a.uff:60: another exponential window than the function of line 40"));
+  EXPECT_THAT(message([](F& f) { f.id[2] = "added decay some"; }),
+              HasSubstr("a.uff:60: \"added decay some\" must tell"));
+  EXPECT_THAT(message([](F& f) {
+                f.type = kUffCoherence;
+                f.complex = false;
+                f.response_direction = 1;
+                f.values = {0.5, 1.5};
+              }),
+              HasSubstr("a.uff:60: a coherence must be from 0 to 1"));
   EXPECT_THAT(message([](F& f) { f.response_direction = -1; }),
               HasSubstr("response x to force x stands in the file twice"));
   UffFunction unknown = accelerance(1, 1);
@@ -148,9 +159,13 @@ TEST(FrfFile, ComesBackFromEveryFormat) {
       const FrfFile back = read_frf(folder.write(name, content));
       ASSERT_EQ(back.response.frequencies_hz, response.frequencies_hz) << name;
       ASSERT_EQ(back.response.receptance, response.receptance) << name;
+      ASSERT_EQ(back.response.coherence, response.coherence) << name;
+      ASSERT_EQ(back.response.added_decay_per_s, response.added_decay_per_s) << name;
       ASSERT_THAT(back.notes, IsEmpty());
     }
-    ASSERT_EQ(measured_entries(read_frf(folder.write("p.uff", text.str())).response), measured_entries(response));
+    const FrequencyResponse rounded = read_frf(folder.write("p.uff", text.str())).response;
+    ASSERT_EQ(measured_entries(rounded), measured_entries(response));
+    ASSERT_EQ(rounded.added_decay_per_s, response.added_decay_per_s);
   }
   EXPECT_THAT(message_of<InputError>([&] { (void)read_frf(folder.write("p.txt", "")); }), HasSubstr("must end in"));
 }
