@@ -44,6 +44,28 @@ plot::Line line_of(const std::vector<double>& hz, const ComplexValues& values, b
   return line;
 }
 
+// No lines where nobody measured it.
+plot::Panel coherence_panel(const FittedPosture& fitted, const std::vector<Entry>& entries,
+                            const std::vector<double>& hz) {
+  plot::Panel panel;
+  panel.title = "Coherence: how much of the motion the force explains";
+  panel.y = {.label = "", .min = 0.0, .max = 1.05};
+  panel.height = 0.6;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const auto& values =
+        fitted.response
+            .coherence[static_cast<std::size_t>(entries[e].response)][static_cast<std::size_t>(entries[e].force)];
+    if (values.empty()) continue;
+    plot::Line line;
+    line.x = hz;
+    for (const std::size_t at : fitted.fit.lines) line.y.push_back(values[at]);
+    line.color = kEntryColors[e];
+    line.width = 1.0;
+    panel.lines.push_back(std::move(line));
+  }
+  return panel;
+}
+
 plot::Panel chart_panel(const StabilizationChart& chart) {
   plot::Scatter other{.x = {}, .y = {}, .color = plot::kGrey, .size = 3.0, .label = "new"};
   other.marker = plot::Marker::cross;
@@ -108,6 +130,7 @@ DynamicsMap map_of_track(const FitStudy& study, int track) {
 
 plot::Panel plane_panel(const FitStudy& study, int track, const std::array<std::size_t, 2>& axes) {
   constexpr int kCells = 48;
+  constexpr double kFlat = 0.005;
   const DynamicsMap map = map_of_track(study, track);
   std::array<double, 2> low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
   std::array<double, 3> middle{};
@@ -118,6 +141,10 @@ plot::Panel plane_panel(const FitStudy& study, int track, const std::array<std::
     }
     for (std::size_t k = 0; k < 3; ++k)
       middle[k] += posture.position[k] / static_cast<double>(study.map.postures.size());
+  }
+  for (std::size_t a = 0; a < 2; ++a) {
+    const double rim = 0.04 * (high[a] - low[a]);  // so that the outermost postures are seen whole
+    low[a] -= rim, high[a] += rim;
   }
   plot::Image image;
   image.x_begin = 1e3 * low[0], image.x_end = 1e3 * high[0];
@@ -137,7 +164,9 @@ plot::Panel plane_panel(const FitStudy& study, int track, const std::array<std::
       image.low = std::min(image.low, hz);
       image.high = std::max(image.high, hz);
     }
-  if (!(image.high > image.low)) image.high = image.low + 1e-3 * std::abs(image.low);
+  const double middle_hz = 0.5 * (image.low + image.high);
+  if (image.high - image.low < kFlat * middle_hz)  // no colours for what is but noise
+    image.low = (1.0 - kFlat) * middle_hz, image.high = (1.0 + kFlat) * middle_hz;
   image.scale_label = "Hz";
   plot::Panel panel;
   panel.title = "Mode " + std::to_string(track);
@@ -210,6 +239,7 @@ plot::Figure response_figure(const FitStudy& study, std::size_t posture) {
       panel->lines.push_back(std::move(drawn));
     }
   }
+  plot::Panel coherence = coherence_panel(fitted, entries, hz);
   plot::Panel chart = chart_panel(fit.chart);
   for (std::size_t m = 0; m < fit.modes.size(); ++m) {
     const double at = fit.modes[m].mode.natural_frequency / kTwoPi;
@@ -221,8 +251,10 @@ plot::Figure response_figure(const FitStudy& study, std::size_t posture) {
   figure.subtitle = fitted.file;
   figure.x.label = "frequency [Hz]";
   if (!hz.empty()) figure.x.min = hz.front(), figure.x.max = hz.back();
-  figure.panels = {std::move(magnitude), std::move(phase), std::move(chart)};
-  figure.height = 1000;
+  figure.height = coherence.lines.empty() ? 1000 : 1120;
+  figure.panels = {std::move(magnitude), std::move(phase)};
+  if (!coherence.lines.empty()) figure.panels.push_back(std::move(coherence));
+  figure.panels.push_back(std::move(chart));
   return figure;
 }
 
@@ -233,16 +265,19 @@ plot::Figure assurance_figure(const FitStudy& study) {
     const auto first = static_cast<double>(modes.size());
     for (std::size_t p = 0; p < study.map.postures.size(); ++p)
       if (const Mode* mode = mode_on(study, track, p)) modes.push_back(mode);
-    panel.notes.push_back(
-        {first, first + 0.4 * (static_cast<double>(modes.size()) - first), std::to_string(track), plot::kVermilion});
+    const double middle = 0.5 * (first + static_cast<double>(modes.size()));
+    panel.notes.push_back({middle, middle, std::to_string(track), plot::kVermilion});
   }
   const auto count = static_cast<int>(modes.size());
   plot::Image image;
   image.x_end = image.y_end = 1.0 * count;
-  image.columns = image.rows = count;
+  const int fine = std::max(1, 400 / std::max(1, count));  // cells of a pair, so that its edges are sharp
+  image.columns = image.rows = fine * count;
   image.scale_label = "MAC";
-  for (const Mode* row : modes)
-    for (const Mode* column : modes) image.values.push_back(static_cast<float>(modal_assurance(*row, *column)));
+  for (int row = 0; row < image.rows; ++row)
+    for (int column = 0; column < image.columns; ++column)
+      image.values.push_back(static_cast<float>(modal_assurance(*modes[static_cast<std::size_t>(row / fine)],
+                                                                *modes[static_cast<std::size_t>(column / fine)])));
   panel.image = std::move(image);
   panel.y.label = "modes, by their number";
   panel.same_scale = true;
