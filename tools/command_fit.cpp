@@ -26,7 +26,7 @@ struct FitOptions {
   bool json = false;
 };
 
-constexpr int kMostOrder = 100;
+constexpr int kLeastOrder = 4, kMostOrder = 40;  // poles have to agree over three orders
 
 double frequency_of(const std::string& option, std::string_view text) {
   double value = 0.0;
@@ -72,8 +72,12 @@ void draw(const FitStudy& study, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(folder.string(), 0, "cannot be made (" + error.message() + ")");
-  for (std::size_t p = 0; p < study.postures.size(); ++p)
-    plot::write_figure(response_figure(study, p), folder / ("frf-" + study.map.postures[p].id + ".svg"));
+  Progress progress("drawing");
+  const std::size_t count = study.postures.size();
+  for (std::size_t p = 0; p < count; ++p) {
+    plot::write_figure(response_figure(study, p), folder / ("frf-" + study.map.postures[p].id + ".png"));
+    progress.update(static_cast<double>(p + 1) / static_cast<double>(count + 1));
+  }
   plot::write_figure(assurance_figure(study), folder / "mac.svg");
   plot::write_figure(track_figure(study), folder / "frequencies.svg");
 }
@@ -109,13 +113,13 @@ void add_fit_command(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--band", options->band, "Fit within MIN:MAX Hz only");
-  command->add_option("--order", options->order, "Stabilization chart up to so many modes")
-      ->check(CLI::Range(1, kMostOrder))
+  command->add_option("--order", options->order, "Stabilization chart up to so many pairs of poles an octave")
+      ->check(CLI::Range(kLeastOrder, kMostOrder))
       ->capture_default_str();
   command->add_option("--method", options->method, "What the chart is made of: lscf or polynomials")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, PoleMethod>{{"lscf", PoleMethod::lscf}, {"polynomials", PoleMethod::polynomials}}));
-  command->add_option("--plots", options->plots, "Folder for pictures: frf-POSTURE.svg, mac.svg and frequencies.svg");
+  command->add_option("--plots", options->plots, "Folder for pictures: frf-POSTURE.png, mac.svg and frequencies.svg");
   command->add_option("--jobs", options->jobs, "Threads")->check(CLI::Range(1, 256));
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer(

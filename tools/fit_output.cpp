@@ -52,13 +52,13 @@ void print_posture(const FitStudy& study, std::size_t p, std::ostream& out) {
   if (std::isfinite(checks.reciprocity_error))
     out << formatted(", reciprocity by %.2g %%", 100.0 * checks.reciprocity_error);
   if (std::isfinite(checks.passivity_excess))
-    out << formatted(", %.2g %% of lines give power", 100.0 * checks.passivity_excess);
-  out << "\n  mode         frequency             damping           stiffness       direction\n";
+    out << formatted(", %.2g %% of the power given, not taken", 100.0 * checks.passivity_excess);
+  out << "\n  mode         frequency               damping                stiffness            direction\n";
   for (std::size_t m = 0; m < posture.fit.modes.size(); ++m) {
     const auto& [mode, deviation] = posture.fit.modes[m];
     const auto& [x, y, z] = mode.direction;
     out << formatted(
-        "  %4d %9.3f +- %-6.2g Hz %6.2f +- %-6.2g %% %9.4g +- %-6.2g N/um  % .3f % .3f % .3f +- %.2g deg\n",
+        "  %4d %9.3f +- %-8.2g Hz %7.3f +- %-8.2g %% %9.4g +- %-8.2g N/um  % .3f % .3f % .3f +- %.2g deg\n",
         study.tracks.number[p][m], mode.natural_frequency / kTwoPi, deviation.natural_frequency / kTwoPi,
         100.0 * mode.damping_ratio, 100.0 * deviation.damping_ratio, 1e-6 * mode.stiffness, 1e-6 * deviation.stiffness,
         x, y, z, rad_to_deg(deviation.direction));

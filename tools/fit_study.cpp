@@ -81,6 +81,8 @@ FittedPosture fitted(const std::string& file, const FitQuestion& question,
   } catch (const std::invalid_argument& error) {
     throw InputError(file, 0, error.what());
   }
+  if (posture.fit.modes.empty())
+    throw InputError(file, 0, posture.fit.doubts.empty() ? "no mode is left" : posture.fit.doubts.back());
   double compliance = 0.0;
   for (const IdentifiedMode& mode : posture.fit.modes) compliance += 1.0 / mode.mode.stiffness;
   const double stiffness = 1.0 / compliance;

@@ -28,19 +28,19 @@ inline FrequencyResponse response_of(std::span<const Mode> modes, const FrfAsked
   FrequencyResponse response;
   for (std::size_t i = 0; i < asked.lines; ++i)
     response.frequencies_hz.push_back(asked.highest_hz * static_cast<double>(i + 1) / static_cast<double>(asked.lines));
+  double largest = 0.0;
   for (std::size_t r = 0; r < 3; ++r)
-    for (const std::size_t f : asked.forces) {
-      ComplexValues& entry = response.receptance[r][f];
-      double largest = 0.0;
+    for (const std::size_t f : asked.forces)
       for (const double hz : response.frequencies_hz) {
-        entry.push_back(receptance_between(modes, r, f, hz));
-        largest = std::max(largest, std::abs(entry.back()));
+        response.receptance[r][f].push_back(receptance_between(modes, r, f, hz));
+        largest = std::max(largest, std::abs(response.receptance[r][f].back()));
       }
+  for (auto& row : response.receptance)
+    for (ComplexValues& entry : row)
       for (std::complex<double>& value : entry) {
         const double re = normal(random), im = normal(random);
         value += asked.noise * largest * std::complex<double>(re, im);
       }
-    }
   return response;
 }
 
