@@ -6,18 +6,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "drivers/can/candump_log.hpp"
 #include "drivers/files/cell.hpp"
 #include "drivers/files/csv.hpp"
 #include "drivers/files/tap_recording_file.hpp"
-#include "models/receptance.hpp"
-#include "tools/cell_posture.hpp"
 #include "tools/commands.hpp"
 #include "tools/output_file.hpp"
 #include "tools/plot_tap.hpp"
 #include "tools/progress.hpp"
 #include "tools/simulated_taps.hpp"
 #include "tools/tap_live.hpp"
+#include "tools/tap_recordings.hpp"
 #include "tools/tap_report.hpp"
 
 namespace stillcut {
@@ -36,81 +34,22 @@ struct TapOptions {
   TapSettings settings;
 };
 
-std::optional<HammerDirection> parse_direction(std::string text) {
-  HammerDirection hammer;
-  if (text.starts_with('-') || text.starts_with('+')) {
-    hammer.sense = text.front() == '-' ? -1.0 : 1.0;
-    text.erase(0, 1);
-  }
-  const std::size_t axis = std::string_view("xyz").find(text);
-  if (text.size() != 1 || axis == std::string_view::npos) return {};
-  hammer.axis = static_cast<int>(axis);
-  return hammer;
-}
+constexpr const char* kBlindToOverloads =
+    "an overload would not be seen: tell --force-full-scale and --acceleration-full-scale\n";
 
-// FILE, or AXIS=FILE where the file does not tell the hammer's axis.
-struct NamedRecording {
-  std::string file;
-  std::optional<HammerDirection> direction;
-};
-
-NamedRecording parse_recording(const std::string& text, double sense) {
-  const std::size_t equals = text.find('=');
-  if (equals == 1)
-    if (auto direction = parse_direction(text.substr(0, equals))) {
-      direction->sense = sense;
-      return {text.substr(equals + 1), direction};
-    }
-  return {text, {}};
-}
-
-struct RecordedDirection {
-  HammerDirection hammer;
-  std::vector<TapRecording> recordings;
-  std::vector<std::string> files;  // of each recording
-};
-
-// The recordings of all files by the hammer's axis.
-std::vector<RecordedDirection> read_directions(const TapOptions& options, std::vector<std::string>& notes) {
-  std::optional<HammerDirection> given;
+NamedRecordings recordings_of(const TapOptions& options) {
+  NamedRecordings named{options.inputs, options.sense, {}, {}};
   if (!options.axis.empty()) {
-    given = parse_direction(options.axis);
-    if (!given) throw CLI::ValidationError("--axis", "'" + options.axis + "' is none of x, y, z");
-    given->sense *= options.sense;
+    named.default_direction = parse_direction(options.axis);
+    if (!named.default_direction) throw CLI::ValidationError("--axis", "'" + options.axis + "' is none of x, y, z");
+    named.default_direction->sense *= options.sense;
   }
-  std::vector<WavChannel> channels;
   try {
-    if (!options.channels.empty()) channels = parse_wav_channels(options.channels);
+    if (!options.channels.empty()) named.channels = parse_wav_channels(options.channels);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--channels", error.what());
   }
-  std::vector<RecordedDirection> directions;
-  for (const std::string& input : options.inputs) {
-    const NamedRecording named = parse_recording(input, options.sense);
-    TapFile content = read_tap_file(named.file, channels);
-    for (const std::string& note : content.notes) notes.push_back(std::string(named.file).append(": ").append(note));
-    for (RecordedTaps& taps : content.taps) {
-      if (named.direction && taps.direction && *named.direction != *taps.direction)
-        throw InputError(named.file, 0,
-                         "tells of a hammer towards " + direction_name(*taps.direction) + ", not " +
-                             direction_name(*named.direction) + "; leave " + input.substr(0, 2) + " out");
-      const auto hammer = taps.direction ? taps.direction : named.direction ? named.direction : given;
-      if (!hammer)
-        throw InputError(named.file, 0, "does not tell the hammer's axis; give --axis x, or x=" + named.file);
-      auto same = std::ranges::find_if(directions, [&](const auto& d) { return d.hammer.axis == hammer->axis; });
-      if (same == directions.end()) {
-        directions.push_back({*hammer, {}, {}});
-        same = directions.end() - 1;
-      }
-      if (same->hammer != *hammer)
-        throw InputError(named.file, 0,
-                         "is struck towards " + direction_name(*hammer) + ", others towards " +
-                             direction_name(same->hammer) + "; estimate them apart");
-      same->recordings.push_back(std::move(taps.recording));
-      same->files.push_back(named.file);
-    }
-  }
-  return directions;
+  return named;
 }
 
 TappedDirection estimate_direction(const TapOptions& options, RecordedDirection&& recorded) {
@@ -129,6 +68,14 @@ TappedDirection estimate_direction(const TapOptions& options, RecordedDirection&
 
 UffForm form_of(const TapOptions& options) { return options.binary ? UffForm::binary : UffForm::text; }
 
+// A WAV tells the end of its range, others leave it open.
+bool is_blind_to_overloads(const TapOptions& options) {
+  const TapSettings& s = options.settings;
+  const auto tells = [](const std::string& input) { return input.ends_with(".wav") || input.ends_with(".WAV"); };
+  return (s.force_full_scale_n == kInfinity || s.acceleration_full_scale_m_per_s2 == kInfinity) &&
+         !std::ranges::all_of(options.inputs, tells);
+}
+
 std::string decay_text(double added_decay_per_s) {
   const double rounded = std::round(1e4 * added_decay_per_s) / 1e4;
   return added_decay_per_s > 0.0 ? "the exponential window adds " + csv_number(rounded) +
@@ -137,10 +84,9 @@ std::string decay_text(double added_decay_per_s) {
 }
 
 void tap_from_files(const TapOptions& options) {
-  if (!options.plot.empty()) plot::check_picture_name(options.plot);
   if (!options.out.empty()) check_frf_name(options.out);
   std::vector<std::string> notes;
-  std::vector<RecordedDirection> recorded = read_directions(options, notes);
+  std::vector<RecordedDirection> recorded = read_directions(recordings_of(options), notes);
   for (const std::string& note : notes) std::cerr << "stillcut: " << note << '\n';
   Progress progress("estimating");
   std::vector<TappedDirection> directions;
@@ -175,7 +121,7 @@ void tap_from_files(const TapOptions& options) {
   if (options.json)
     std::cout << object.dump() << '\n';
   else
-    std::cout << decay_text(response.added_decay_per_s);
+    std::cout << (is_blind_to_overloads(options) ? kBlindToOverloads : "") << decay_text(response.added_decay_per_s);
 }
 
 std::vector<HammerDirection> parse_directions(const TapOptions& options) {
@@ -206,31 +152,15 @@ std::vector<std::string> posture_ids(const TapOptions& options) {
 
 void simulate(const TapOptions& options) {
   const Cell cell = read_cell(options.inputs.front(), {.bus = false});
-  const CellDynamics dynamics = read_cell_dynamics(cell);
   std::vector<SimulatedTap> taps;
   for (const HammerDirection hammer : parse_directions(options))
     for (int hit = 0; hit < options.hits; ++hit) taps.push_back({.hammer = hammer});
-  OutputFile file(options.simulate);
-  SimulatedTapping tapping;
-  tapping.seed = options.seed;
-  tapping.spacing_s = 1.0 + options.settings.record_s;
-  std::int64_t frames = 0;
-  Progress progress("tapping");
   const std::vector<std::string> ids = posture_ids(options);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::vector<Mode> modes = predicted_posture(cell, dynamics, ids[i]).posture.modes;
-    const std::int64_t begin_ns = tapping.origin_ns;
-    const double seconds = tapping.spacing_s * static_cast<double>(taps.size());
-    std::array<char, kMaxCandumpLine> line{};
-    simulate_taps(cell, modes, taps, tapping, [&](const CanFrame& frame) {
-      file.stream().write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
-      if ((++frames & 0x3FF) == 0)
-        progress.update((static_cast<double>(i) + 1e-9 * static_cast<double>(frame.stamp_ns - begin_ns) / seconds) /
-                        static_cast<double>(ids.size()));
-    });
-    tapping.origin_ns += static_cast<std::int64_t>(1e9 * seconds);
-    ++tapping.seed;
-  }
+  OutputFile file(options.simulate);
+  Progress progress("tapping");
+  const std::int64_t frames =
+      write_simulated_taps(cell, ids, taps, {.spacing_s = 1.0 + options.settings.record_s, .seed = options.seed},
+                           file.stream(), [&](double share) { progress.update(share); });
   progress.finish();
   file.finish();
   if (options.simulate == "-") return;
@@ -283,6 +213,7 @@ void tap_on_bus(const TapOptions& options) {
 }
 
 void tap(const TapOptions& options) {
+  if (!options.plot.empty()) plot::check_picture_name(options.plot);
   const bool cell = std::filesystem::path(options.inputs.front()).extension() == ".toml";
   if (!cell && !options.simulate.empty()) throw CLI::ValidationError("--simulate", "needs a cell file");
   if (!cell) return tap_from_files(options);
@@ -351,7 +282,8 @@ void add_tap_command(CLI::App& app) {
   command->add_option("--seed", options->seed, "Of the simulated noise")->capture_default_str();
   add_settings(*command, *options);
   command->add_flag("--binary", options->binary, "Universal files in binary (58b)");
-  command->add_option("--plot", options->plot, "Draw pulses, responses and coherence to a .svg or .png file");
+  command->add_option("--plot", options->plot,
+                      "Draw pulses, responses and coherence, with a cell of the last posture, to .svg or .png");
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer(
       "Example: three recordings of a posture, one a direction of the hammer, to one file:\n"

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
+#include "drivers/can/candump_log.hpp"
 #include "drivers/can/dbc.hpp"
 #include "models/machining.hpp"
 #include "models/modal_structure.hpp"
 #include "tools/can_encoder.hpp"
+#include "tools/cell_posture.hpp"
 #include "tools/tap_listener.hpp"
 
 namespace stillcut {
@@ -67,6 +70,28 @@ void simulate_taps(const Cell& cell, std::span<const Mode> modes, std::span<cons
       send(frame);
     }
   }
+}
+
+std::int64_t write_simulated_taps(const Cell& cell, std::span<const std::string> postures,
+                                  std::span<const SimulatedTap> taps, SimulatedTapping tapping, std::ostream& out,
+                                  const std::function<void(double)>& progress) {
+  const CellDynamics dynamics = read_cell_dynamics(cell);
+  const double seconds = tapping.spacing_s * static_cast<double>(taps.size());
+  const std::int64_t first_ns = tapping.origin_ns;
+  std::int64_t frames = 0;
+  for (const std::string& posture : postures) {
+    const std::vector<Mode> modes = predicted_posture(cell, dynamics, posture).posture.modes;
+    std::array<char, kMaxCandumpLine> line{};
+    simulate_taps(cell, modes, taps, tapping, [&](const CanFrame& frame) {
+      out.write(line.data(), static_cast<std::streamsize>(format_candump_line(frame, "can0", line)));
+      if ((++frames & 0x3FF) == 0)
+        progress(1e-9 * static_cast<double>(frame.stamp_ns - first_ns) /
+                 (seconds * static_cast<double>(postures.size())));
+    });
+    tapping.origin_ns += static_cast<std::int64_t>(1e9 * seconds);
+    ++tapping.seed;
+  }
+  return frames;
 }
 
 }  // namespace stillcut

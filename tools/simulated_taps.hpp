@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <span>
+#include <string>
 
 #include "drivers/files/cell.hpp"
 #include "drivers/files/tap_recording_file.hpp"
@@ -32,5 +34,11 @@ struct SimulatedTapping {
 // shares its message with an accelerometer, and as compile_decode_plan does.
 void simulate_taps(const Cell& cell, std::span<const Mode> modes, std::span<const SimulatedTap> taps,
                    const SimulatedTapping& tapping, const std::function<void(const CanFrame&)>& send);
+
+// At postures of the cell's map, one after the other, as a candump log; `progress` is told the share done, 0 to 1.
+// Returns how many frames. Throws InputError for a posture that the map does not know, too.
+std::int64_t write_simulated_taps(const Cell& cell, std::span<const std::string> postures,
+                                  std::span<const SimulatedTap> taps, SimulatedTapping tapping, std::ostream& out,
+                                  const std::function<void(double)>& progress);
 
 }  // namespace stillcut

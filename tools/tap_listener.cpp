@@ -170,20 +170,32 @@ std::optional<HeardTap> TapListener::next_hit() {
   return heard;
 }
 
-// Keeps what a record begins before, and enough frames to compare their stamps.
-void TapListener::forget_before(std::int64_t force_index) {
-  const auto drop = [](Stream& stream, std::int64_t index) {
-    index = std::min(index, stream.end);
-    if (index <= stream.begin) return;
-    for (std::deque<double>& values : stream.values)
-      if (!values.empty()) values.erase(values.begin(), values.begin() + (index - stream.begin));
-    while (!stream.overloads.empty() && stream.overloads.front() < index) stream.overloads.pop_front();
-    while (stream.blocks.size() > 1 && stream.blocks.front().end <= index) stream.blocks.pop_front();
-    stream.begin = index;
-  };
-  drop(streams_[kForce], force_index);
-  if (!streams_[kForce].blocks.empty() && !streams_[kResponse].blocks.empty())
-    drop(streams_[kResponse], force_index + response_lead());
+void TapListener::drop_before(Stream& stream, std::int64_t index) {
+  index = std::min(index, stream.end);
+  if (index <= stream.begin) return;
+  for (std::deque<double>& values : stream.values)
+    if (!values.empty()) values.erase(values.begin(), values.begin() + (index - stream.begin));
+  while (!stream.overloads.empty() && stream.overloads.front() < index) stream.overloads.pop_front();
+  while (stream.blocks.size() > 1 && stream.blocks.front().end <= index) stream.blocks.pop_front();
+  stream.begin = index;
+}
+
+// Keeps the record before the next hit, whose frames tell how the two streams lie; and of a stream whose other one is
+// silent some records, not all that ever comes.
+void TapListener::forget_old() {
+  Stream& force = streams_[kForce];
+  Stream& response = streams_[kResponse];
+  const std::int64_t kept = 2 * length_, most = 8 * length_;
+  const std::int64_t oldest = (hit_ ? *hit_ : scanned_) - kept;
+  if (oldest > force.begin + kept && !response.blocks.empty()) {
+    const std::int64_t lead = response_lead();
+    drop_before(force, oldest);
+    drop_before(response, oldest + lead);
+  }
+  for (Stream& stream : streams_)
+    if (stream.end - stream.begin > most) drop_before(stream, stream.end - most / 2);
+  scanned_ = std::max(scanned_, force.begin);
+  if (hit_ && *hit_ < force.begin) hit_.reset();
 }
 
 std::optional<HeardTap> TapListener::add(const CanFrame& frame) {
@@ -199,9 +211,7 @@ std::optional<HeardTap> TapListener::add(const CanFrame& frame) {
   }
   if (in_lost_hit) return HeardTap{{}, 0.0, "frames were lost on the bus: hit again"};
   std::optional<HeardTap> heard = next_hit();
-  const std::int64_t kept = std::max(length_, std::int64_t{64} * step_);
-  const std::int64_t oldest = (hit_ ? *hit_ : scanned_) - before_ - kept;
-  if (oldest > streams_[kForce].begin + kept) forget_before(oldest);
+  forget_old();
   return heard;
 }
 

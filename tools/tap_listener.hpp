@@ -69,7 +69,8 @@ class TapListener {
   [[nodiscard]] std::int64_t response_lead() const;
   [[nodiscard]] TapRecording cut_out(std::int64_t force_begin, std::int64_t length, std::int64_t lead) const;
   std::optional<HeardTap> next_hit();
-  void forget_before(std::int64_t force_index);
+  static void drop_before(Stream& stream, std::int64_t index);
+  void forget_old();
 
   TapSettings settings_;
   Decoder decoder_;

@@ -148,7 +148,7 @@ TEST(TapCommand, RefusesBadRecordingsWithOneLineThatNamesThem) {
       {{"cut.uff"}, 3, "cut.uff:"},
       {{"sound.csv"}, 3, "sound.csv: does not tell the hammer's axis; give --axis x, or x=sound.csv"},
       {{"sound.csv", "--axis", "x", "--force-full-scale", "450"}, 3, "sound.csv: no hit can be used: at 0.5"},
-      {{"x=y.uff"}, 3, "y.uff: tells of a hammer towards y, not x; leave x= out"},
+      {{"x=y.uff"}, 3, "y.uff: tells of a hammer towards y, not x; leave its direction"},
       {{"a.wav", "--axis", "x"}, 3, "a.wav: a WAV file tells no units; name its channels"},
       {{"a.wav", "--axis", "x", "--channels", "force:2000N,x:9g"}, 3, "a.wav: has 4 channels, but 2 are named"},
       {{"a.wav", "--axis", "x", "--channels", "force:2000N,x:9m"}, 2, "'x:9m' has no unit of acceleration"},
