@@ -114,6 +114,29 @@ TEST(TapListener, RefusesAHitInWhichFramesAreLostAndOneThatIsCutOff) {
   EXPECT_THAT(heard[2].refusal, IsEmpty());
 }
 
+// One of the two is switched on long after the other: what came before is let go, and the hit is heard all the same.
+TEST(TapListener, HearsAHitAfterOneSideWasSilent) {
+  const std::vector<SimulatedTap> taps{{.hammer = kAlongX}};
+  const TapSettings settings{.record_s = 0.2};
+  const std::vector<CanFrame> all = frames_of_taps(tapped_demo_cell(), taps, {.spacing_s = 6.0});
+  for (const std::uint32_t silent : {288U, 320U}) {
+    std::vector<CanFrame> frames = all;
+    std::erase_if(frames, [&](const CanFrame& frame) {
+      return frame.id == silent && frame.stamp_ns < all.front().stamp_ns + 2'500'000'000;
+    });
+    const std::vector<HeardTap> heard = heard_of(frames, tapped_demo_cell(), settings);
+    ASSERT_EQ(heard.size(), 1U) << silent;
+    EXPECT_EQ(heard[0].refusal, "");
+    const TapRecording& recording = heard[0].recording;
+    EXPECT_EQ(recording.force.size(), record_samples(settings, 25600.0));
+    // The tool's point is moved by the hammer's first samples, not before.
+    const auto moves = [](const std::vector<double>& values, double from) {
+      return std::ranges::find_if(values, [&](double value) { return std::abs(value) > from; }) - values.begin();
+    };
+    EXPECT_NEAR(moves(recording.force, 5.0), moves(recording.acceleration[0], 5.0), 5) << silent;
+  }
+}
+
 TEST(TapListener, RefusesACellThatCannotBeTapped) {
   const auto message = [](auto spoil, std::size_t sensor = 0) {
     Cell cell = tapped_demo_cell();

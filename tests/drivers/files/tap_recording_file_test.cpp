@@ -116,6 +116,31 @@ TEST(TapRecordingFile, NamesFileAndLineOfWhatIsWrongInAUniversalFile) {
   EXPECT_THAT(message([](F& f) { f.clear(); }), HasSubstr("a.uff: has no time record"));
 }
 
+// Fails where a spoilt file ends in anything but a recording or a line that names it.
+TEST(TapRecordingFile, ThatIsCutOffOrSpoiltAtRandomIsReadOrRefused) {
+  std::mt19937_64 random(12);
+  int refused = 0;
+  for (int n = 0; n < 600; ++n) {
+    const TapRecording taps = random_taps(random);
+    std::ostringstream out;
+    write_uff(out, uff_of(std::vector{taps}, {1, -1.0}), n % 2 == 0 ? UffForm::text : UffForm::binary);
+    std::string bytes = out.str();
+    if (n % 3 == 0) bytes.resize(random() % bytes.size());
+    for (int spoilt = n % 3; spoilt > 0; --spoilt) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
+    try {
+      for (const RecordedTaps& read : tap_file_of(parse_uff(bytes, "a.uff"), "a.uff").taps) {
+        EXPECT_GT(read.recording.sample_rate_hz, 0.0);
+        for (const std::vector<double>& axis : read.recording.acceleration)
+          EXPECT_TRUE(axis.empty() || axis.size() == read.recording.force.size());
+      }
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("a.uff"));
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 200);
+}
+
 TEST(TapRecordingFile, IsReadAsTheColumnsOfACsvSay) {
   const TapRecording r =
       parse_tap_csv("force_n,time_s,az_m_per_s2,note\n1,5.000000,-4,a\n2,5.000039,-5,b\n3,5.000078,-6,c\n", "a.csv");
