@@ -12,6 +12,7 @@
 #include "dsp/numbers.hpp"
 #include "models/dynamics_map.hpp"
 #include "models/frequency_response.hpp"
+#include "models/response_checks.hpp"
 #include "models/stabilization_chart.hpp"
 
 namespace stillcut {
@@ -36,29 +37,22 @@ struct ResidualTerms {
   std::array<std::array<double, 3>, 3> compliance{};  // m/N, 0: none
 };
 
-enum class PoleMethod { lscf, polynomials };
-
 struct IdentificationSettings {
   double lowest_hz = 0.0, highest_hz = kInfinity;  // the band that is fitted
-  int most_order = 40;                             // of the stabilization chart: poles up to this many
-  std::vector<double> poles_hz;                    // the operator's choice; empty: chosen by the chart
+  int most_order = 12;                             // of the stabilization chart: pairs of poles an octave
+  std::vector<double> poles_hz{};                  // the operator's choice; empty: chosen by the chart
   PoleMethod method = PoleMethod::lscf;            // what the chart is made of
 };
 
-// Of responses measured both ways, e.g. xy and yx, and of direct ones; NaN where none was.
-struct ResponseChecks {
-  double reciprocity_error = kNaN;  // root mean square of the difference over that of the mean
-  double passivity_excess = kNaN;   // share of the lines of direct responses whose power is negative beyond noise
-};
-
 struct ModalFit {
-  std::vector<IdentifiedMode> modes;  // rising frequency
+  std::vector<IdentifiedMode> modes;  // rising frequency; what an exponential window added to their decay is off
+  std::vector<Mode> as_measured;      // with it: what goes through the measured responses
   ResidualTerms residual;
   StabilizationChart chart;
   ResponseChecks checks;
-  std::vector<std::size_t> lines;                            // of the response, that were fitted
-  std::array<std::array<std::vector<double>, 3>, 3> noise;   // m/N at those lines: standard deviation of |H|
-  double misfit = 0.0;  // root mean square of the difference, over that of the response
+  std::vector<std::size_t> lines;                           // of the response, that were fitted
+  std::array<std::array<std::vector<double>, 3>, 3> noise;  // m/N at those lines: root mean square error of H
+  double misfit = 0.0;              // root mean square of the difference, over that of the response
   std::vector<std::string> doubts;  // whole sentences for the operator
 };
 
@@ -68,7 +62,7 @@ struct ModalFit {
 [[nodiscard]] ModalFit identify_modes(const FrequencyResponse& response, const IdentificationSettings& settings = {},
                                       const std::function<void(double)>& progress = {});
 
-// The fitted receptance of an entry, m/N: modes and residual terms.
+// The fitted receptance of an entry, m/N: modes as measured and residual terms.
 [[nodiscard]] ComplexValues fitted_receptance(const ModalFit& fit, int response_axis, int force_axis,
                                               const std::vector<double>& frequencies_hz);
 

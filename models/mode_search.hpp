@@ -1,0 +1,20 @@
+// Where a mode is missing: what a fit left over, held against one more mode at every frequency and damping.
+#pragma once
+
+#include <optional>
+
+#include "models/modal_model.hpp"
+
+namespace stillcut {
+
+struct MissingMode {
+  Pole pole;
+  double gain = 0.0;  // what chi square falls by at least, every entry's residue free; where nothing is missing about
+                      // the number of entries
+};
+
+// The mode that would explain most of it; nothing without lines. Damping from 0.1 to 12 %.
+[[nodiscard]] std::optional<MissingMode> missing_mode(const std::vector<Eigen::VectorXcd>& left_over,
+                                                      const FrfLines& lines, const FrfWeights& weights);
+
+}  // namespace stillcut
