@@ -72,6 +72,7 @@ void write_measured_places(const std::filesystem::path& folder, const std::files
   const std::size_t id = table.require_column(kPostureColumn);
   const auto quoted = [](const std::vector<std::string>& fields) {
     std::vector<std::string> row;
+    row.reserve(fields.size());
     for (const std::string& field : fields) row.push_back(csv_text(field));
     return row;
   };

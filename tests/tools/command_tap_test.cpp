@@ -8,6 +8,7 @@
 #include "drivers/files/csv.hpp"
 #include "drivers/files/frf_file.hpp"
 #include "drivers/files/tap_recording_file.hpp"
+#include "models/modal_identification.hpp"
 #include "tests/drivers/files/tap_cases.hpp"
 #include "tests/models/tapped_structure.hpp"
 #include "tests/tools/tapped_cell.hpp"
@@ -226,6 +227,31 @@ TEST(TapCommand, GuidesThroughTheDirectionsOfEveryPosture) {
           .exit_code,
       0);
   EXPECT_EQ(content_of(cell.path() / "home.uff"), content_of(cell.path() / "taps" / "home.uff"));
+}
+
+// All the way: what taps on the map's structure tell is the map. Breaks where the window's decay is lost on the way,
+// which doubles the damping of the lowest mode.
+TEST(TapCommand, LeavesWhatGivesTheMapsModesAgain) {
+  const DemoCell cell;
+  const auto answers = cell.write("answers", "a\na\n");
+  ASSERT_EQ(stillcut_tap(cell, {"cell.toml", "--posture", "home", "--directions", "x,y", "--hits", "3", "--simulate",
+                                "taps.log"})
+                .exit_code,
+            0);
+  const Finished done = stillcut_tap(cell,
+                                     {"cell.toml", "--bus", "log:taps.log", "--posture", "home", "--directions", "x,y",
+                                      "--hits", "3", "--highest", "900", "--out", "taps"},
+                                     answers);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const ModalFit fit = identify_modes(read_frf(cell.path() / "taps" / "home.uff").response, {.lowest_hz = 8.0});
+  const std::vector<Mode> modes = home_modes();
+  ASSERT_EQ(fit.modes.size(), modes.size());
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const Mode& found = fit.modes[i].mode;
+    EXPECT_NEAR(found.natural_frequency, modes[i].natural_frequency, 0.005 * modes[i].natural_frequency) << i;
+    EXPECT_NEAR(found.damping_ratio, modes[i].damping_ratio, 0.05 * modes[i].damping_ratio) << i;
+    EXPECT_NEAR(found.stiffness, modes[i].stiffness, 0.02 * modes[i].stiffness) << i;
+  }
 }
 
 TEST(TapCommand, KeepsWhatWasAcceptedWhereTheOperatorQuitsOrTheLogEnds) {
