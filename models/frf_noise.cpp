@@ -18,6 +18,7 @@ constexpr int kNoiseSteps = 60;
 constexpr double kOutlier = 25.0;      // times the variance: more is no noise, one in 10^11
 constexpr double kLeastShare = 1e-12;  // of the mean square of the values: what counts as none
 constexpr int kMostAlike = 32;         // lines apart
+constexpr double kNothing = 1e-12;     // of the mean square of the largest entry: no sensor tells so little from none
 
 // First lines of the blocks, and the end.
 std::vector<Index> blocks_of(Index count) {
@@ -94,6 +95,19 @@ Eigen::VectorXd variance_of(const Eigen::VectorXd& omega, const Eigen::VectorXcd
   return mixed.cwiseProduct(smooth_mean(squares.cwiseQuotient(mixed), 1e-6)).cwiseMax(least);
 }
 
+// An entry of nothing, as computed responses have them across the axes, tells no noise of its own, and taken for exact
+// it would outweigh all others: it is as noisy as the quietest of them.
+void lend_noise(const FrfLines& lines, std::vector<Eigen::VectorXd>& variances) {
+  std::vector<double> power;
+  for (const FrfEntry& entry : lines.entries) power.push_back(entry.values.cwiseAbs2().mean());
+  const double nothing = kNothing * *std::max_element(power.begin(), power.end());
+  Eigen::VectorXd quietest;
+  for (std::size_t e = 0; e < power.size(); ++e)
+    if (power[e] > nothing) quietest = quietest.size() == 0 ? variances[e] : quietest.cwiseMin(variances[e]).eval();
+  for (std::size_t e = 0; e < power.size(); ++e)
+    if (power[e] <= nothing && quietest.size() > 0) variances[e] = quietest;
+}
+
 }  // namespace
 
 std::vector<Eigen::VectorXd> noise_of_differences(const FrfLines& lines,
@@ -110,6 +124,7 @@ std::vector<Eigen::VectorXd> noise_of_differences(const FrfLines& lines,
     }
     result.push_back(variance_of(lines.omega, error, entry.values, least_variance(entry)));
   }
+  lend_noise(lines, result);
   return result;
 }
 
@@ -119,6 +134,7 @@ std::vector<Eigen::VectorXd> noise_of_remainder(const FrfLines& lines, const std
     const FrfEntry& entry = lines.entries[e];
     result.push_back(variance_of(lines.omega, left_over[e], entry.values - left_over[e], least_variance(entry)));
   }
+  lend_noise(lines, result);
   return result;
 }
 

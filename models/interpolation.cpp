@@ -188,7 +188,8 @@ PredictedPosture predict_posture(const DynamicsMap& map, const Posture& query, c
     }
     if (std::isfinite(gap)) result.map_spacing = std::max(result.map_spacing, gap);
   }
-  result.outside = map.postures.size() > 1 && result.nearest_distance > result.map_spacing;
+  constexpr double kRounding = 1e-9;  // relative: the next place of an even grid is as far as the others
+  result.outside = map.postures.size() > 1 && result.nearest_distance > (1.0 + kRounding) * result.map_spacing;
   if (result.nearest_distance == 0.0) {
     result.posture.modes = neighbour.modes;
     sort_modes(result.posture.modes);

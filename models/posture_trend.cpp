@@ -26,12 +26,12 @@ Eigen::VectorXd seen_from(const Posture& query, const Posture& posture, bool has
   return way;
 }
 
-// Columns: directions along which the points (rows) spread.
-Eigen::MatrixXd wide_directions(const Eigen::MatrixXd& points) {
+// Columns: directions along which the points (rows) spread, `most` at most.
+Eigen::MatrixXd wide_directions(const Eigen::MatrixXd& points, Index most) {
   const Eigen::MatrixXd centred = points.rowwise() - points.colwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread(centred.transpose() * centred);
   const Eigen::VectorXd& squares = spread.eigenvalues();  // rising
-  const Index size = squares.size(), most = (points.rows() - 1) / 2;
+  const Index size = squares.size();
   Index count = 0;
   while (count < std::min(size, most) && squares[size - 1] > 0.0 &&
          squares[size - 1 - count] >= kThin * kThin * squares[size - 1]) {
@@ -64,7 +64,7 @@ std::vector<double> trend_weights(const DynamicsMap& map, const Posture& query, 
     points.row(r) = seen_from(query, map.postures[i], map.has_joints, scale);
     w[r] = result[i] * result[i] / squares;
   }
-  const Eigen::MatrixXd x = points * wide_directions(points);
+  const Eigen::MatrixXd x = points * wide_directions(points, (count - 1) / 2);
   if (x.cols() == 0) return result;
   const Eigen::RowVectorXd mean = w.transpose() * x;
   const Eigen::MatrixXd off = x.rowwise() - mean;
@@ -74,6 +74,15 @@ std::vector<double> trend_weights(const DynamicsMap& map, const Posture& query, 
   const Eigen::VectorXd slope = covariance.ldlt().solve(mean.transpose());
   for (Index r = 0; r < count; ++r) result[used[static_cast<std::size_t>(r)]] = w[r] * (1.0 - off.row(r).dot(slope));
   return result;
+}
+
+int spread_directions(const DynamicsMap& map, const JointScale& scale) {
+  if (map.postures.empty()) return 0;
+  Eigen::MatrixXd points(static_cast<Index>(map.postures.size()), map.has_joints ? 6 : 3);
+  for (Index r = 0; r < points.rows(); ++r)
+    points.row(r) =
+        seen_from(map.postures.front(), map.postures[static_cast<std::size_t>(r)], map.has_joints, scale).transpose();
+  return static_cast<int>(wide_directions(points, points.cols()).cols());
 }
 
 }  // namespace stillcut

@@ -24,4 +24,8 @@ namespace stillcut {
 std::vector<double> trend_weights(const DynamicsMap& map, const Posture& query, std::span<const double> weights,
                                   const JointScale& scale = kEqualJoints);
 
+// In how many directions the map's postures spread at least a tenth as far as in the widest: a slope in all of them
+// takes two postures for each, and one. 0 for a single posture.
+int spread_directions(const DynamicsMap& map, const JointScale& scale = kEqualJoints);
+
 }  // namespace stillcut

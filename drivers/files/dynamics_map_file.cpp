@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numeric>
+#include <sstream>
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
+#include "drivers/files/text_file.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
@@ -50,7 +51,7 @@ bool same_place(const DynamicsMap& map, const Posture& a, const Posture& b) {
   return map.has_joints ? a.joints == b.joints : a.position == b.position;
 }
 
-DynamicsMap read_postures(const CsvTable& table, std::vector<const CsvRow*>& rows) {
+DynamicsMap posture_rows(const CsvTable& table, std::vector<const CsvRow*>& rows) {
   check_column_names(table, joined(joined({"posture"}, kJointColumns), kPositionColumns));
   DynamicsMap map;
   map.has_joints = std::any_of(kJointColumns.begin(), kJointColumns.end(),
@@ -126,23 +127,12 @@ void read_modes(const CsvTable& table, DynamicsMap& map) {
   }
 }
 
-std::ofstream open_for_writing(const std::filesystem::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  if (!out) throw InputError(file.string(), 0, "cannot be written; check the folder's permissions");
-  return out;
-}
-
-void check_written(std::ofstream& out, const std::filesystem::path& file) {
-  out.close();
-  if (!out) throw InputError(file.string(), 0, "cannot be written to its end; is the disk full?");
-}
-
 }  // namespace
 
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
   const CsvTable postures = read_csv(folder / "postures.csv");
   std::vector<const CsvRow*> rows;
-  DynamicsMap map = read_postures(postures, rows);
+  DynamicsMap map = posture_rows(postures, rows);
   read_modes(read_csv(folder / "modes.csv"), map);
   for (std::size_t i = 0; i < map.postures.size(); ++i) {
     Posture& posture = map.postures[i];
@@ -155,36 +145,41 @@ DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
   return map;
 }
 
-void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& map) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw InputError(folder.string(), 0, "cannot be made (" + error.message() + ")");
+DynamicsMap read_postures(const std::filesystem::path& file) {
+  std::vector<const CsvRow*> rows;
+  return posture_rows(read_csv(file), rows);
+}
 
-  const auto postures_file = folder / "postures.csv";
-  const auto modes_file = folder / "modes.csv";
-  std::ofstream postures = open_for_writing(postures_file);
-  std::ofstream modes = open_for_writing(modes_file);
+std::array<std::string, 2> dynamics_map_text(const DynamicsMap& map, const MapNames& names) {
+  std::ostringstream postures, modes;
   write_csv_row(postures, joined(joined({"posture"}, map.has_joints ? kJointColumns : std::vector<std::string>{}),
                                  kPositionColumns));
   write_csv_row(modes, joined({"posture", "mode"}, kModeColumns));
-  for (const Posture& posture : map.postures) {
+  for (std::size_t p = 0; p < map.postures.size(); ++p) {
+    const Posture& posture = map.postures[p];
+    const auto place = [&](double value) { return names.places_known ? csv_number(value) : std::string{}; };
     std::vector<std::string> row{csv_text(posture.id)};
     if (map.has_joints) {
-      for (const double joint : posture.joints) row.push_back(csv_number(rad_to_deg(joint)));
+      for (const double joint : posture.joints) row.push_back(place(rad_to_deg(joint)));
     }
-    for (const double coordinate : posture.position) row.push_back(csv_number(coordinate / kMm));
+    for (const double coordinate : posture.position) row.push_back(place(coordinate / kMm));
     write_csv_row(postures, row);
     for (std::size_t i = 0; i < posture.modes.size(); ++i) {
       const Mode& mode = posture.modes[i];
+      const int number = names.mode_numbers.empty() ? static_cast<int>(i + 1) : names.mode_numbers[p][i];
       write_csv_row(
-          modes, std::vector<std::string>{csv_text(posture.id), std::to_string(i + 1),
+          modes, std::vector<std::string>{csv_text(posture.id), std::to_string(number),
                                           csv_number(mode.natural_frequency / kTwoPi), csv_number(mode.damping_ratio),
                                           csv_number(mode.stiffness), csv_number(mode.direction[0]),
                                           csv_number(mode.direction[1]), csv_number(mode.direction[2])});
     }
   }
-  check_written(postures, postures_file);
-  check_written(modes, modes_file);
+  return {postures.str(), modes.str()};
+}
+
+void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& map) {
+  auto [postures, modes] = dynamics_map_text(map);
+  write_text_files(folder, {{"postures.csv", std::move(postures)}, {"modes.csv", std::move(modes)}});
 }
 
 }  // namespace stillcut

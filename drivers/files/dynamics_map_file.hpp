@@ -2,7 +2,10 @@
 // contracts.md describes them.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "models/dynamics_map.hpp"
 
@@ -14,8 +17,19 @@ namespace stillcut {
 // % (a smaller rounding error is mended). Modes come in rising frequency.
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder);
 
-// Writes both files; makes the folder. Numbers are written so that they read back equal, but for the last bit where a
-// unit is converted. Throws InputError when a file cannot be written.
+// postures.csv alone: where the machine stood, no modes yet. Throws InputError as read_dynamics_map.
+DynamicsMap read_postures(const std::filesystem::path& file);
+
+struct MapNames {
+  std::vector<std::vector<int>> mode_numbers{};  // [posture][mode]: what `mode` says; empty: 1, 2, … at each posture
+  bool places_known = true;                      // false: the places are left empty, for the user to fill in
+};
+
+// Both files as text, in the order postures.csv, modes.csv. Numbers are written so that they read back equal, but for
+// the last bit where a unit is converted.
+std::array<std::string, 2> dynamics_map_text(const DynamicsMap& map, const MapNames& names = {});
+
+// Writes both files, or none (write_text_files). Throws InputError when a file cannot be written.
 void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& map);
 
 }  // namespace stillcut

@@ -37,4 +37,30 @@ std::string read_text_file(const std::filesystem::path& file) {
   return text;
 }
 
+void write_text_files(const std::filesystem::path& folder, const std::vector<NamedText>& files) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError(folder.string(), 0, "cannot be made (" + error.message() + ")");
+  std::vector<std::filesystem::path> written;
+  const auto fail = [&](const std::filesystem::path& file, const std::string& message) {
+    std::error_code ignored;
+    for (const auto& other : written) std::filesystem::remove(other, ignored);
+    throw InputError(file.string(), 0, message);
+  };
+  for (const NamedText& file : files) {
+    // An output that cannot be replaced, a folder say, is found before anything is.
+    if (std::filesystem::is_directory(folder / file.name)) fail(folder / file.name, "is a folder; remove it");
+    written.push_back(folder / (file.name + ".new"));
+    std::ofstream out(written.back(), std::ios::binary);
+    if (!out) fail(folder / file.name, "cannot be written; check the folder's permissions");
+    out << file.text;
+    out.close();
+    if (!out) fail(folder / file.name, "cannot be written to its end; is the disk full?");
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::filesystem::rename(written[i], folder / files[i].name, error);
+    if (error) fail(folder / files[i].name, "cannot be replaced (" + error.message() + ")");
+  }
+}
+
 }  // namespace stillcut

@@ -192,5 +192,30 @@ TEST(DynamicsMapFile, ReadsBackWhatItWrote) {
   }
 }
 
+TEST(DynamicsMapFile, TakesNumbersOfModesThatAreNotInARow) {
+  std::mt19937 random(4);
+  const DynamicsMap map = random_map(random, false);
+  const auto [postures, modes] = dynamics_map_text(map, {.mode_numbers = {5, {2, 1, 7, 4}}});
+  const DynamicsMap back = read(postures, modes);
+  EXPECT_EQ(back.postures[4].modes[2].stiffness, map.postures[4].modes[2].stiffness);
+  EXPECT_EQ(modes.substr(0, modes.find('\n', 80)).find("\"area, \"\"0\"\"\",2,"), modes.find('\n') + 1);
+}
+
+TEST(DynamicsMapFile, PlacesThatNobodyKnowsStayEmptyAndAreAskedForInReading) {
+  std::mt19937 random(4);
+  const auto [postures, modes] = dynamics_map_text(random_map(random, false), {.places_known = false});
+  EXPECT_EQ(postures.substr(0, postures.find('\n', 25)), "posture,x_mm,y_mm,z_mm\n\"area, \"\"0\"\"\",,,");
+  EXPECT_EQ(error_of(postures, modes).substr(0, 22), "postures.csv:2: x_mm: ");
+}
+
+TEST(DynamicsMapFile, ReadsPosturesAlone) {
+  const TempFolder folder;
+  const DynamicsMap map = read_postures(folder.write("places.csv", kHexapodPostures));
+  ASSERT_EQ(map.postures.size(), 2U);
+  EXPECT_TRUE(map.postures[1].modes.empty());
+  EXPECT_NEAR(map.postures[1].position[0], 0.1, 1e-15);
+  EXPECT_THROW((void)read_postures(folder.write("none.csv", "posture,x_mm,y_mm,z_mm\n")), InputError);
+}
+
 }  // namespace
 }  // namespace stillcut
