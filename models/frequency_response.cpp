@@ -42,12 +42,15 @@ void require_sound_response(const FrequencyResponse& response) {
     }
   if (!(response.added_decay_per_s >= 0.0) || !std::isfinite(response.added_decay_per_s))
     throw std::invalid_argument("the decay that a window added must be from 0 1/s up");
+  if (!(response.force_error >= 0.0) || !std::isfinite(response.force_error))
+    throw std::invalid_argument("the error of the force must be from 0 up");
 }
 
 FrequencyResponse joined_responses(std::span<const FrequencyResponse> parts) {
   if (parts.empty()) throw std::invalid_argument("no frequency response was given");
   FrequencyResponse joined = parts.front();
   for (const FrequencyResponse& part : parts.subspan(1)) {
+    joined.force_error = std::max(joined.force_error, part.force_error);
     if (part.frequencies_hz != joined.frequencies_hz)
       throw std::invalid_argument("frequencies differ: use the same sample rate and record length for every direction");
     if (part.added_decay_per_s != joined.added_decay_per_s)

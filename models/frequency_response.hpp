@@ -22,13 +22,17 @@ struct FrequencyResponse {
   // What an exponential window added to the decay rate of every mode, 1/s: without_added_decay() (tap_estimate.hpp)
   // takes it off a mode that was fitted to these responses.
   double added_decay_per_s = 0.0;
+  // Standard error of the force, relative, as far as many lines share it: the noise within a short force window, which
+  // no line tells from the next. 0: not known, or none.
+  double force_error = 0.0;
 };
 
 [[nodiscard]] std::size_t measured_entries(const FrequencyResponse& response);
 
 // Throws std::invalid_argument for frequencies that do not rise or are below 0, for no measured entry, and for one that
 // has another number of values than there are frequencies or a value that is not finite; likewise for coherence of what
-// was not measured or beyond 0 to 1, and for an added decay below 0.
+// was not measured or beyond 0 to 1, and for an added decay
+// or a force error below 0.
 void require_sound_response(const FrequencyResponse& response);
 
 // The columns of several responses of one point, measured for one direction of force after the other, as one. Throws

@@ -27,7 +27,8 @@ struct FitEffort {
 [[nodiscard]] ModalModel model_of_poles(const std::vector<Pole>& poles, const FrfLines& lines,
                                         const FrfWeights& weights);
 
-// How far a term stands out of the noise: a^T C^-1 a, about 3 for none at all.
+// How far a term stands out of the noise: the square of |a| over its standard deviation, about 1 for none at all. Two
+// terms that stand for one mode have none, as what one has the other may have as well.
 [[nodiscard]] double significance(const LikelihoodFit& fit, std::size_t term);
 
 }  // namespace stillcut

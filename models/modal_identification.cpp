@@ -67,10 +67,27 @@ IdentifiedMode identified(const SelectedModes& work, std::size_t r) {
   return result;
 }
 
+// What an error of the force does that the lines about a mode share, as no remainder tells: turned by an angle the
+// response looks like one of another frequency, by that angle in half-widths; damping goes with how the error changes
+// over the half-width, which is at most of its own size. It is an error of the whole response: where a mode is a small
+// share of that, it is a larger one of the mode.
+void widen(IdentifiedMode& one, double force_error) {
+  const auto widened = [&](double deviation, double by) { return std::hypot(deviation, by * force_error); };
+  ModeDeviation& deviation = one.deviation;
+  const Mode& mode = one.mode;
+  deviation.natural_frequency = widened(deviation.natural_frequency, mode.damping_ratio * mode.natural_frequency);
+  deviation.damping_ratio = widened(deviation.damping_ratio, mode.damping_ratio);
+  deviation.stiffness = widened(deviation.stiffness, mode.stiffness);
+  deviation.direction = widened(deviation.direction, 0.5);
+}
+
 // Modes rising in frequency, as they were measured and as they are.
-void take_modes(ModalFit& result, const SelectedModes& work, double added_decay_per_s) {
+void take_modes(ModalFit& result, const SelectedModes& work, double added_decay_per_s, double force_error) {
   std::vector<IdentifiedMode> measured;
-  for (std::size_t r = 0; r < work.fit.model.terms.size(); ++r) measured.push_back(identified(work, r));
+  for (std::size_t r = 0; r < work.fit.model.terms.size(); ++r) {
+    measured.push_back(identified(work, r));
+    widen(measured.back(), force_error / share_of_response(work.fit.model, work.fit.model.terms[r]));
+  }
   std::stable_sort(measured.begin(), measured.end(), [](const IdentifiedMode& a, const IdentifiedMode& b) {
     return a.mode.natural_frequency < b.mode.natural_frequency;
   });
@@ -82,8 +99,8 @@ void take_modes(ModalFit& result, const SelectedModes& work, double added_decay_
                                        "longer, or with a weaker window"));
       continue;
     }
-    // The window moves decay and frequency, not how sure they are.
     IdentifiedMode own = one;
+    // The window moves decay and frequency, not how sure they are.
     own.mode = without_added_decay(one.mode, added_decay_per_s);
     own.deviation.damping_ratio *= one.mode.natural_frequency / own.mode.natural_frequency;
     own.deviation.stiffness *= own.mode.stiffness / one.mode.stiffness;
@@ -136,7 +153,7 @@ ModalFit identify_modes(const FrequencyResponse& response, const IdentificationS
     throw std::invalid_argument("no mode stands out of the noise: hit harder, or average more hits");
 
   result.doubts = response_doubts(lines);
-  take_modes(result, work, response.added_decay_per_s);
+  take_modes(result, work, response.added_decay_per_s, response.force_error);
   fill_residual(result.residual, work.fit.model);
   result.checks = check_responses(lines, work.weights);
   result.lines = lines.lines;

@@ -39,16 +39,7 @@ void weigh(SelectedModes& modes, const FrfLines& lines) {
   modes.alike = lines_alike(rest, modes.weights);
 }
 
-// How much of the response at its own frequency a term is: what is less than instruments are true to corrects another
-// mode's shape and is none of the structure.
-double share_of_response(const ModalModel& model, const ModalTerm& term) {
-  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, term.pole.natural_frequency);
-  Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
-  for (const ModalTerm& other : model.terms)
-    sum += pole_response(other.pole, at)[0] * (other.root * other.root.transpose()).cast<std::complex<double>>();
-  return term.root.squaredNorm() / (2.0 * term.pole.damping_ratio * sum.norm());
-}
-
+// What is less of the response than instruments are true to corrects another mode's shape and is none of the structure.
 double worth_of(const SelectedModes& modes, std::size_t r, const FrfLines& lines) {
   const ModalTerm& term = modes.fit.model.terms[r];
   if (!can_be_mode(term.pole, lines) || share_of_response(modes.fit.model, term) < kLeastOfResponse) return 0.0;
@@ -163,6 +154,14 @@ double price_of(const SelectedModes& modes, double parameters) {
   double values = 0.0;
   for (const Eigen::VectorXd& weight : modes.weights) values += 2.0 * static_cast<double>(weight.size());
   return parameters * std::log(values) * modes.alike * std::max(1.0, modes.fit.chi_square / values);
+}
+
+double share_of_response(const ModalModel& model, const ModalTerm& term) {
+  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, term.pole.natural_frequency);
+  Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
+  for (const ModalTerm& other : model.terms)
+    sum += pole_response(other.pole, at)[0] * (other.root * other.root.transpose()).cast<std::complex<double>>();
+  return term.root.squaredNorm() / (2.0 * term.pole.damping_ratio * sum.norm());
 }
 
 bool can_be_mode(const Pole& pole, const FrfLines& lines) {

@@ -20,6 +20,9 @@ struct SelectedModes {
 // In the band, with damping that a mode of a structure has.
 [[nodiscard]] bool can_be_mode(const Pole& pole, const FrfLines& lines);
 
+// How much of the fitted response at a term's own frequency the term is.
+[[nodiscard]] double share_of_response(const ModalModel& model, const ModalTerm& term);
+
 // Before anything is fitted.
 [[nodiscard]] FrfWeights rough_weights(const FrfLines& lines);
 

@@ -99,9 +99,7 @@ void require_receptance(const FrfLines& lines, const FrfWeights& weights) {
   for (std::size_t e = 0; e < lines.entries.size(); ++e) {
     const FrfEntry& entry = lines.entries[e];
     if (entry.response != entry.force) continue;
-    const auto excess_as = [&](std::complex<double> turn) {
-      return positive_share(entry.values, weights[e], turn);
-    };
+    const auto excess_as = [&](std::complex<double> turn) { return positive_share(entry.values, weights[e], turn); };
     if (excess_as(1.0) <= kMostGivingPower) continue;
     const bool mobility = excess_as({0.0, -1.0}) < 0.1;
     throw std::invalid_argument(sentence(

@@ -17,6 +17,8 @@ namespace stillcut {
 
 namespace {
 
+constexpr double kLinesShare = 0.2;  // of the record: a force window up to this is short
+
 // A value for each line, from the one after 0 Hz, of which an acceleration tells nothing.
 struct TapSums {
   struct Axis {
@@ -24,6 +26,7 @@ struct TapSums {
     ComplexValues cross;  // conj(F) X
   };
   std::vector<double> force_power;
+  double force_noise_power = 0.0;  // what noise adds to the sum of that, of each line
   std::array<Axis, 3> axes;
   std::size_t hits = 0;
 };
@@ -50,7 +53,7 @@ TapWindows tap_windows(const TapSettings& settings, double rate, std::size_t len
 
 // At rest a sensor shows its offset, which for an accelerometer may be gravity. A hit leaves no velocity, so the mean
 // acceleration is the offset; force has one sign, but is at rest most of the time.
-double rest_of_force(std::vector<double> values) {
+double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -123,6 +126,22 @@ ComplexValues receptance_at_shifted_lines(std::span<const double> frequencies_hz
   return receptance_of(ResponseKind::accelerance, frequencies_hz, accelerance);
 }
 
+// Of force at rest, N: from the middle half of what lies about its median, as the hits are a small share of the time.
+double noise_of_force(const std::vector<double>& force, double rest) {
+  std::vector<double> off(force.size());
+  std::ranges::transform(force, off.begin(), [&](double value) { return std::abs(value - rest); });
+  return 1.4826 * median_of(std::move(off));
+}
+
+// Relative: what noise inside the force window adds to the force's transform, where the window is so short that many
+// lines share it.
+double shared_force_error(const TapSums& sums, const TapSettings& settings, double record_s) {
+  if (!(settings.force_window_s < kLinesShare * record_s)) return 0.0;
+  std::vector<double> power = sums.force_power;
+  const double usual = median_of(std::move(power));
+  return usual > 0.0 ? std::sqrt(0.5 * sums.force_noise_power / (usual * static_cast<double>(sums.hits))) : 0.0;
+}
+
 // Sums over the sound hits of all recordings.
 TapSums summed_over_hits(std::span<const TapRecording> recordings, std::span<const TapHit> hits,
                          const TapSettings& settings, std::size_t length, std::size_t lines, double decay) {
@@ -135,11 +154,12 @@ TapSums summed_over_hits(std::span<const TapRecording> recordings, std::span<con
   sums.axes.fill(TapSums::Axis{std::vector<double>(lines, 0.0), ComplexValues(lines)});
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const TapRecording& recording = recordings[r];
-    const double force_rest = rest_of_force(recording.force);
+    const double force_rest = median_of(recording.force), force_noise = noise_of_force(recording.force, force_rest);
     const std::array<double, 3> rest = rest_of_accelerations(recording.acceleration);
     for (const TapHit& hit : hits) {
       if (hit.recording != r || hit.fault != TapFault::none) continue;
       ++sums.hits;
+      for (const double weight : windows.force) sums.force_noise_power += weight * weight * force_noise * force_noise;
       const auto record = [&](const std::vector<double>& values) {
         return std::span{values}.subspan(hit.at - before, length);
       };
@@ -201,11 +221,11 @@ TapEstimate estimate_taps(std::span<const TapRecording> recordings, const TapSet
   for (std::size_t i = 0; i < lines; ++i)
     result.h1.frequencies_hz.push_back(static_cast<double>(i + 1) * result.resolution_hz);
   result.h1.added_decay_per_s = result.added_decay_per_s;
-  result.h2 = result.hv = result.h1;
-
   const TapSums sums = summed_over_hits(recordings, result.hits, settings, length, lines, result.added_decay_per_s);
   if (sums.hits == 0) refuse_all(recordings, result, settings);
   result.hits_used = sums.hits;
+  result.h1.force_error = shared_force_error(sums, settings, static_cast<double>(length) / rate);
+  result.h2 = result.hv = result.h1;
   for (const double power : sums.force_power)
     result.force_spectrum.push_back(std::sqrt(power / static_cast<double>(sums.hits)) / rate);
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -9,6 +9,7 @@ namespace {
 constexpr std::string_view kEntryAxes = "xyz";
 constexpr const char* kFrequencyColumn = "frequency_hz";
 constexpr const char* kDecayColumn = "added_decay_per_s";
+constexpr const char* kForceErrorColumn = "force_error";
 
 std::string entry_column(std::size_t response, std::size_t force, const char* part) {
   std::string name{'h', '_', kEntryAxes[response], kEntryAxes[force]};
@@ -20,7 +21,7 @@ std::string coherence_column(std::size_t response, std::size_t force) {
 }
 
 std::vector<std::string> all_columns() {
-  std::vector<std::string> names{kFrequencyColumn, kDecayColumn};
+  std::vector<std::string> names{kFrequencyColumn, kDecayColumn, kForceErrorColumn};
   for (std::size_t response = 0; response < 3; ++response)
     for (std::size_t force = 0; force < 3; ++force)
       for (const char* part : {"_re", "_im"}) names.push_back(entry_column(response, force, part));
@@ -59,15 +60,15 @@ std::vector<double> read_coherence(const CsvTable& table, std::size_t response, 
   return values;
 }
 
-// The same in every row: the window is of the whole measurement.
-double read_added_decay(const CsvTable& table) {
-  const auto column = table.find_column(kDecayColumn);
+// Of the whole measurement: the same in every row; 0 without the column.
+double read_constant(const CsvTable& table, const char* name) {
+  const auto column = table.find_column(name);
   if (!column) return 0.0;
-  const double decay = table.number(table.rows().front(), *column);
+  const double told = table.number(table.rows().front(), *column);
   for (const CsvRow& row : table.rows())
-    if (const double value = table.number(row, *column); value != decay || value < 0.0)
+    if (const double value = table.number(row, *column); value != told || value < 0.0)
       fail_value(table, row, *column, "must be from 0 up and the same in every row; correct it");
-  return decay;
+  return told;
 }
 
 }  // namespace
@@ -92,7 +93,8 @@ FrequencyResponse parse_frf_csv(std::string_view content, const std::string& fil
       if (!response.receptance[axis][force].empty())
         response.coherence[axis][force] = read_coherence(table, axis, force);
     }
-  response.added_decay_per_s = read_added_decay(table);
+  response.added_decay_per_s = read_constant(table, kDecayColumn);
+  response.force_error = read_constant(table, kForceErrorColumn);
   if (measured_entries(response) == 0)
     throw InputError(file, table.header_line(),
                      "has no pair such as h_xx_re,h_xx_im: response and force axis, real and imaginary part in m/N");
@@ -118,6 +120,7 @@ void write_frf_csv(std::ostream& out, const FrequencyResponse& response) {
       coherences.push_back(&response.coherence[axis][force]);
     }
   if (response.added_decay_per_s > 0.0) header.emplace_back(kDecayColumn);
+  if (response.force_error > 0.0) header.emplace_back(kForceErrorColumn);
   write_csv_row(out, header);
   for (std::size_t i = 0; i < response.frequencies_hz.size(); ++i) {
     std::vector<std::string> row{csv_number(response.frequencies_hz[i])};
@@ -127,6 +130,7 @@ void write_frf_csv(std::ostream& out, const FrequencyResponse& response) {
     }
     for (const std::vector<double>* values : coherences) row.push_back(csv_number((*values)[i]));
     if (response.added_decay_per_s > 0.0) row.push_back(csv_number(response.added_decay_per_s));
+    if (response.force_error > 0.0) row.push_back(csv_number(response.force_error));
     write_csv_row(out, row);
   }
 }

@@ -20,7 +20,9 @@ constexpr double kSameFrequency = 1e-6;  // relative: six digits of a text file
 constexpr double kSameUnit = 1e-3;       // relative
 constexpr double kRoundedCoherence = 1e-6;
 constexpr const char* kAxisNames = "xyz";
-constexpr std::string_view kDecayText = "added decay ";  // in a line of text of a function, then its number and 1/s
+// In a line of text of a function, before a number and what follows it.
+constexpr std::string_view kDecayText = "added decay ", kDecayUnit = " 1/s";
+constexpr std::string_view kForceErrorText = "force error ", kForceErrorUnit = " relative";
 
 struct NamedUnit {
   const char* name;
@@ -100,21 +102,29 @@ class FrfReader {
     return true;
   }
 
-  // Told in a line of text, as uff_of() writes it.
-  void add_decay(const UffFunction& function) {
-    double decay = 0.0;
+  // Told in a line of text, as uff_of() writes it; 0 where none does.
+  double told(const UffFunction& function, std::string_view before, std::string_view after) const {
+    double value = 0.0;
     for (const std::string& text : function.id) {
-      if (!text.starts_with(kDecayText)) continue;
-      const std::optional<double> told = fortran_number(uff_bare(std::string_view(text).substr(
-          kDecayText.size(), std::min(text.find(" 1/s"), text.size()) - kDecayText.size())));
-      if (!told || *told < 0.0)
-        fail(function, "\"" + text + "\" must tell a number from 0 up, in 1/s; correct or remove this line");
-      decay = *told;
+      if (!text.starts_with(before)) continue;
+      const std::optional<double> number = fortran_number(uff_bare(
+          std::string_view(text).substr(before.size(), std::min(text.find(after), text.size()) - before.size())));
+      if (!number || *number < 0.0)
+        fail(function,
+             "\"" + text + "\" must tell a number from 0 up," + std::string(after) + "; correct or remove this line");
+      value = *number;
     }
+    return value;
+  }
+
+  void add_decay(const UffFunction& function) {
+    const double decay = told(function, kDecayText, kDecayUnit);
     if (&function != first_ && decay != result_.response.added_decay_per_s)
       fail(function, "another exponential window than the function of line " + std::to_string(first_->line) +
                          "; give files of one measurement");
     result_.response.added_decay_per_s = decay;
+    result_.response.force_error =
+        std::max(result_.response.force_error, told(function, kForceErrorText, kForceErrorUnit));
   }
 
   std::size_t axis_of(const UffFunction& function, int direction, const char* name) const {
@@ -246,6 +256,8 @@ UffFile uff_of(const FrequencyResponse& response) {
       function.id[0] = entry;
       if (response.added_decay_per_s > 0.0)
         function.id[1] = std::string(kDecayText) + csv_number(response.added_decay_per_s) + " 1/s, exponential window";
+      if (response.force_error > 0.0)
+        function.id[2] = std::string(kForceErrorText) + csv_number(response.force_error) + std::string(kForceErrorUnit);
       function.response_node = function.reference_node = 1;
       function.response_direction = static_cast<int>(axis) + 1;
       function.reference_direction = static_cast<int>(force) + 1;

@@ -36,18 +36,19 @@ DynamicsMap with_tool(DynamicsMap map) {
 FrequencyResponse tapped_response(const std::vector<Mode>& modes, unsigned seed) {
   FrequencyResponse all;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::array pulses{HammerPulse{0.05, 800.0, 1.2e-3}};
+    const std::array pulses{HammerPulse{0.05, 800.0, 2e-3}};
     const TapRecording taps = repeated_with_noise(tapped(modes, axis, 1.0, pulses, 4.2, 8192.0), 5, kForceNoise,
                                                   kAccelerationNoise, 10 * seed + static_cast<unsigned>(axis));
     TapSettings settings;
     settings.force_axis = static_cast<int>(axis);
     settings.record_s = 4.0;
     settings.end_weight = 0.3;
-    settings.highest_of_rate = 0.1;
+    settings.highest_of_rate = 0.085;
     settings.force_window_s = 0.005;
     const TapEstimate estimate = estimate_taps({&taps, 1}, settings);
     all.frequencies_hz = estimate.h1.frequencies_hz;
     all.added_decay_per_s = estimate.added_decay_per_s;
+    all.force_error = std::max(all.force_error, estimate.h1.force_error);
     for (std::size_t i = 0; i < 3; ++i) all.receptance[i][axis] = estimate.h1.receptance[i][axis];
   }
   return all;

@@ -33,6 +33,7 @@ inline FrequencyResponse random_response(std::mt19937_64& random) {
         for (std::size_t i = 0; i < points; ++i)
           response.coherence[axis][force].push_back(std::uniform_real_distribution<>(0.0, 1.0)(random));
   if (below(2) == 0) response.added_decay_per_s = std::uniform_real_distribution<>(0.1, 9.0)(random);
+  if (below(2) == 0) response.force_error = std::uniform_real_distribution<>(1e-5, 1e-2)(random);
   return response;
 }
 

@@ -24,6 +24,7 @@ TEST(FrfCsv, ComesBackToTheLastBit) {
     ASSERT_EQ(back.receptance, response.receptance) << out.str();
     ASSERT_EQ(back.coherence, response.coherence) << out.str();
     ASSERT_EQ(back.added_decay_per_s, response.added_decay_per_s);
+    ASSERT_EQ(back.force_error, response.force_error);
   }
 }
 

@@ -161,6 +161,7 @@ TEST(FrfFile, ComesBackFromEveryFormat) {
       ASSERT_EQ(back.response.receptance, response.receptance) << name;
       ASSERT_EQ(back.response.coherence, response.coherence) << name;
       ASSERT_EQ(back.response.added_decay_per_s, response.added_decay_per_s) << name;
+      ASSERT_EQ(back.response.force_error, response.force_error) << name;
       ASSERT_THAT(back.notes, IsEmpty());
     }
     const FrequencyResponse rounded = read_frf(folder.write("p.uff", text.str())).response;
