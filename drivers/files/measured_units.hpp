@@ -19,15 +19,16 @@ namespace stillcut {
 
 // m/s^2 of one; nothing where the name is of no acceleration.
 [[nodiscard]] constexpr std::optional<double> acceleration_unit(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"m/s^2", 1.0},
-                                                                       {"m/s2", 1.0},
-                                                                       {"m/s**2", 1.0},
-                                                                       {"m/s\xC2\xB2", 1.0},
-                                                                       {"mm/s^2", 1e-3},
-                                                                       {"mm/s2", 1e-3},
-                                                                       {"in/s^2", 0.0254},
-                                                                       {"g", 9.80665},
-                                                                       {"G", 9.80665}}};
+  constexpr std::array<std::pair<std::string_view, double>, 10> kUnits{{{"m/s^2", 1.0},
+                                                                        {"m/s2", 1.0},
+                                                                        {"m/s**2", 1.0},
+                                                                        {"m/s\xC2\xB2", 1.0},
+                                                                        {"m/s\xB2", 1.0},
+                                                                        {"mm/s^2", 1e-3},
+                                                                        {"mm/s2", 1e-3},
+                                                                        {"in/s^2", 0.0254},
+                                                                        {"g", 9.80665},
+                                                                        {"G", 9.80665}}};
   for (const auto& [unit, si] : kUnits)
     if (name == unit) return si;
   return {};

@@ -18,8 +18,8 @@ struct UffAxis {
   int data_type = 0;  // kUff…; 0 unknown
   std::string label, units;
 };
-inline constexpr int kUffUnknown = 0, kUffDisplacement = 8, kUffReactionForce = 9, kUffVelocity = 11, kUffAcceleration = 12,
-                     kUffExcitationForce = 13, kUffTime = 17, kUffFrequency = 18;
+inline constexpr int kUffUnknown = 0, kUffDisplacement = 8, kUffReactionForce = 9, kUffVelocity = 11,
+                     kUffAcceleration = 12, kUffExcitationForce = 13, kUffTime = 17, kUffFrequency = 18;
 
 inline constexpr int kUffTimeResponse = 1, kUffFrequencyResponse = 4, kUffCoherence = 6;  // types of a function
 

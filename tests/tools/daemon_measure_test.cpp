@@ -1,4 +1,5 @@
-// The daemon while the machine is measured: it runs before there is a map, and asks for nothing. Runs the real programs.
+// The daemon while the machine is measured: it runs before there is a map, and asks for nothing. Runs the real
+// programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
