@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "measured_modes.hpp"
 #include "models/peak_picking.hpp"
+#include "tests/models/measured_modes.hpp"
 
 namespace stillcut {
 
