@@ -7,6 +7,7 @@
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/input_error.hpp"
+#include "drivers/files/text_file.hpp"
 #include "models/machining.hpp"
 
 namespace stillcut {
@@ -140,10 +141,15 @@ void check_written(std::ofstream& out, const std::filesystem::path& file) {
 }  // namespace
 
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
-  const CsvTable postures = read_csv(folder / "postures.csv");
+  return parse_dynamics_map(read_text_file(folder / "postures.csv"), read_text_file(folder / "modes.csv"), folder);
+}
+
+DynamicsMap parse_dynamics_map(std::string_view postures_text, std::string_view modes_text,
+                               const std::filesystem::path& folder) {
+  const CsvTable postures = parse_csv(postures_text, (folder / "postures.csv").string());
   std::vector<const CsvRow*> rows;
   DynamicsMap map = read_postures(postures, rows);
-  read_modes(read_csv(folder / "modes.csv"), map);
+  read_modes(parse_csv(modes_text, (folder / "modes.csv").string()), map);
   for (std::size_t i = 0; i < map.postures.size(); ++i) {
     Posture& posture = map.postures[i];
     if (posture.modes.empty()) {
@@ -155,6 +161,33 @@ DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
   return map;
 }
 
+void write_postures(std::ostream& out, const DynamicsMap& map) {
+  write_csv_row(out, joined(joined({"posture"}, map.has_joints ? kJointColumns : std::vector<std::string>{}),
+                            kPositionColumns));
+  for (const Posture& posture : map.postures) {
+    std::vector<std::string> row{csv_text(posture.id)};
+    if (map.has_joints) {
+      for (const double joint : posture.joints) row.push_back(csv_number(rad_to_deg(joint)));
+    }
+    for (const double coordinate : posture.position) row.push_back(csv_number(coordinate / kMm));
+    write_csv_row(out, row);
+  }
+}
+
+void write_modes(std::ostream& out, const DynamicsMap& map) {
+  write_csv_row(out, joined({"posture", "mode"}, kModeColumns));
+  for (const Posture& posture : map.postures) {
+    for (std::size_t i = 0; i < posture.modes.size(); ++i) {
+      const Mode& mode = posture.modes[i];
+      write_csv_row(
+          out, std::vector<std::string>{csv_text(posture.id), std::to_string(i + 1),
+                                        csv_number(mode.natural_frequency / kTwoPi), csv_number(mode.damping_ratio),
+                                        csv_number(mode.stiffness), csv_number(mode.direction[0]),
+                                        csv_number(mode.direction[1]), csv_number(mode.direction[2])});
+    }
+  }
+}
+
 void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& map) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -164,25 +197,8 @@ void write_dynamics_map(const std::filesystem::path& folder, const DynamicsMap& 
   const auto modes_file = folder / "modes.csv";
   std::ofstream postures = open_for_writing(postures_file);
   std::ofstream modes = open_for_writing(modes_file);
-  write_csv_row(postures, joined(joined({"posture"}, map.has_joints ? kJointColumns : std::vector<std::string>{}),
-                                 kPositionColumns));
-  write_csv_row(modes, joined({"posture", "mode"}, kModeColumns));
-  for (const Posture& posture : map.postures) {
-    std::vector<std::string> row{csv_text(posture.id)};
-    if (map.has_joints) {
-      for (const double joint : posture.joints) row.push_back(csv_number(rad_to_deg(joint)));
-    }
-    for (const double coordinate : posture.position) row.push_back(csv_number(coordinate / kMm));
-    write_csv_row(postures, row);
-    for (std::size_t i = 0; i < posture.modes.size(); ++i) {
-      const Mode& mode = posture.modes[i];
-      write_csv_row(
-          modes, std::vector<std::string>{csv_text(posture.id), std::to_string(i + 1),
-                                          csv_number(mode.natural_frequency / kTwoPi), csv_number(mode.damping_ratio),
-                                          csv_number(mode.stiffness), csv_number(mode.direction[0]),
-                                          csv_number(mode.direction[1]), csv_number(mode.direction[2])});
-    }
-  }
+  write_postures(postures, map);
+  write_modes(modes, map);
   check_written(postures, postures_file);
   check_written(modes, modes_file);
 }
