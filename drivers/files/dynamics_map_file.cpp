@@ -141,7 +141,8 @@ void check_written(std::ofstream& out, const std::filesystem::path& file) {
 }  // namespace
 
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
-  return parse_dynamics_map(read_text_file(folder / "postures.csv"), read_text_file(folder / "modes.csv"), folder);
+  const std::string postures = read_text_file(folder / "postures.csv");  // the first that is missed
+  return parse_dynamics_map(postures, read_text_file(folder / "modes.csv"), folder);
 }
 
 DynamicsMap parse_dynamics_map(std::string_view postures_text, std::string_view modes_text,
