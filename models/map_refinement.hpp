@@ -43,7 +43,7 @@ struct ShiftObservation {
 
 struct RefinementSettings {
   std::size_t least_observations = 5;
-  double standard_errors = 3.0;  // a shift must exceed so many
+  double standard_errors = 4.0;  // a shift must exceed so many
   double least_shift = 0.006;    // relative, and this: what the method itself is off on a sound map
 };
 
