@@ -44,7 +44,7 @@ struct ShiftObservation {
 struct RefinementSettings {
   std::size_t least_observations = 5;
   double standard_errors = 4.0;  // a shift must exceed so many
-  double least_shift = 0.006;    // relative, and this: what the method itself is off on a sound map
+  double least_shift = 0.008;    // relative, and this: what errors of stiffness, damping and depth pass for
 };
 
 // Observations of one mode at one posture, together.

@@ -85,14 +85,15 @@ TEST(ShiftOfMode, KnowsAnAliasAndItsMirror) {
     const double own = point.chatter_frequency, mirrored = std::round(2.0 * own / passing) * passing - own;
     // Near half the tooth-passing frequency an alias and its mirror are too near to each other.
     if (point.instability != Instability::hopf || std::abs(mirrored - own) < 0.3 * passing) continue;
-    ++speeds;
+    const bool told = shift_of_mode(one.cut, map, {speed, 1.2 * limit.depth, own}).has_value();
+    speeds += told ? 1 : 0;
     for (const double heard : {own, own + passing, mirrored}) {
       const auto shift = shift_of_mode(one.cut, map, {speed, 1.2 * limit.depth, heard});
-      ASSERT_TRUE(shift) << rpm << " " << heard;
-      EXPECT_NEAR(shift->ratio, 1.0 / 1.01, 1e-4);
+      EXPECT_EQ(shift.has_value(), told) << rpm << " " << heard;
+      if (shift) EXPECT_NEAR(shift->ratio, 1.0 / 1.01, 1e-4);
     }
   }
-  EXPECT_GE(speeds, 3);
+  EXPECT_GE(speeds, 5);
 }
 
 TEST(ShiftOfMode, LeavesOpenWhatAFrequencyCannotTell) {
