@@ -201,6 +201,7 @@ void add_refine_command(CLI::App& app) {
       "  stillcut refine cell.toml --can recordings\n"
       "  stillcut refine cell.toml --accept home/5");
   command->callback([options, accept, reject] {
+    for (std::vector<std::string>* ids : {&options->accept, &options->reject}) std::erase(*ids, "");  // none named
     options->accepts = accept->count() > 0;
     options->rejects = reject->count() > 0;
     if (!options->lcm.empty() && options->can.size() != 1)

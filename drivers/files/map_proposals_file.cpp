@@ -17,7 +17,7 @@ const std::vector<std::string> kProposalColumns{
     "posture",         "mode",         "frequency_hz", "proposed_frequency_hz",
     "frequency_hz_se", "observations", "status",       "evidence"};
 constexpr std::array kStatusNames{"open", "accepted", "rejected"};  // in the order of ProposalStatus
-constexpr double kUnchanged = 1e-9;                                 // relative
+constexpr double kUnchanged = 1e-7;                                 // relative; digits of a proposal
 
 double positive_number(const CsvTable& table, const CsvRow& row, std::size_t column, double most) {
   const double value = table.number(row, column);
@@ -32,6 +32,9 @@ int whole_number(const CsvTable& table, const CsvRow& row, std::size_t column) {
   if (value != std::floor(value)) table.fail(row, column, csv_number(value) + " is no whole number");
   return static_cast<int>(value);
 }
+
+// Turning rad/s into Hz leaves a last digit that means nothing.
+double rounded_hz(double hz) { return std::round(hz * 1e6) / 1e6; }
 
 // All or nothing, so that a crash leaves a whole file.
 template <class Write>
@@ -82,9 +85,9 @@ void write_map_proposals(const std::filesystem::path& folder, const std::vector<
     write_csv_row(out, kProposalColumns);
     for (const MapProposal& one : proposals)
       write_csv_row(
-          out, std::array{csv_text(one.posture), std::to_string(one.mode), csv_number(one.frequency_hz),
-                          csv_number(one.proposed_frequency_hz), csv_number(one.frequency_hz_se),
-                          std::to_string(one.observations),
+          out, std::array{csv_text(one.posture), std::to_string(one.mode), csv_number(rounded_hz(one.frequency_hz)),
+                          csv_number(rounded_hz(one.proposed_frequency_hz)),
+                          csv_number(rounded_hz(one.frequency_hz_se)), std::to_string(one.observations),
                           std::string(kStatusNames.at(static_cast<std::size_t>(one.status))), csv_text(one.evidence)});
   });
 }
@@ -103,7 +106,7 @@ DynamicsMap with_proposals(DynamicsMap map, const std::vector<MapProposal>& prop
     const auto mode = static_cast<std::size_t>(one.mode - 1);
     const double hz = at->modes[mode].natural_frequency / kTwoPi;
     if (std::abs(hz - one.frequency_hz) > kUnchanged * hz)
-      fail("has " + csv_number(hz) + " Hz in the map, not " + csv_number(one.frequency_hz) +
+      fail("has " + csv_number(rounded_hz(hz)) + " Hz in the map, not " + csv_number(one.frequency_hz) +
            " as when it was proposed");
     map.postures[static_cast<std::size_t>(at - before.postures.begin())].modes[mode].natural_frequency =
         kTwoPi * one.proposed_frequency_hz;

@@ -29,6 +29,7 @@ struct MapProposal {
 // Empty where the folder has none. Throws InputError with file and line for a column that is missing, a number out of
 // range, an unknown status, a mode that stands twice.
 std::vector<MapProposal> read_map_proposals(const std::filesystem::path& folder);
+// Frequencies to the millionth of a Hz.
 void write_map_proposals(const std::filesystem::path& folder, const std::vector<MapProposal>& proposals);
 
 // The map with these proposals. Throws InputError where a posture or mode is not in the map, or is not as it was when
