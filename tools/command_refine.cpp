@@ -81,6 +81,7 @@ void decide(const RefineOptions& options, const std::filesystem::path& folder, c
   std::filesystem::path kept;
   if (options.accepts) {
     std::vector<MapProposal> accepted;
+    accepted.reserve(named.size());
     for (const MapProposal* one : named) accepted.push_back(*one);
     kept = replace_modes(folder, with_proposals(map, accepted, folder));
   }

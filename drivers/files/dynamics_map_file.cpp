@@ -163,8 +163,8 @@ DynamicsMap parse_dynamics_map(std::string_view postures_text, std::string_view 
 }
 
 void write_postures(std::ostream& out, const DynamicsMap& map) {
-  write_csv_row(out, joined(joined({"posture"}, map.has_joints ? kJointColumns : std::vector<std::string>{}),
-                            kPositionColumns));
+  write_csv_row(
+      out, joined(joined({"posture"}, map.has_joints ? kJointColumns : std::vector<std::string>{}), kPositionColumns));
   for (const Posture& posture : map.postures) {
     std::vector<std::string> row{csv_text(posture.id)};
     if (map.has_joints) {
@@ -180,11 +180,10 @@ void write_modes(std::ostream& out, const DynamicsMap& map) {
   for (const Posture& posture : map.postures) {
     for (std::size_t i = 0; i < posture.modes.size(); ++i) {
       const Mode& mode = posture.modes[i];
-      write_csv_row(
-          out, std::vector<std::string>{csv_text(posture.id), std::to_string(i + 1),
-                                        csv_number(mode.natural_frequency / kTwoPi), csv_number(mode.damping_ratio),
-                                        csv_number(mode.stiffness), csv_number(mode.direction[0]),
-                                        csv_number(mode.direction[1]), csv_number(mode.direction[2])});
+      write_csv_row(out, std::vector<std::string>{
+                             csv_text(posture.id), std::to_string(i + 1), csv_number(mode.natural_frequency / kTwoPi),
+                             csv_number(mode.damping_ratio), csv_number(mode.stiffness), csv_number(mode.direction[0]),
+                             csv_number(mode.direction[1]), csv_number(mode.direction[2])});
     }
   }
 }

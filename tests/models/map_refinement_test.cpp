@@ -78,7 +78,7 @@ TEST(ShiftOfMode, KnowsAnAliasAndItsMirror) {
   std::vector<Mode> map = one.modes;
   map[0].natural_frequency *= 1.01;
   int speeds = 0;
-  for (double rpm = 4000; rpm < 9000; rpm += 300) {
+  for (double rpm = 4000; rpm < 9000; rpm += 100) {
     const double speed = rpm_to_rad_s(rpm), passing = 2.0 * speed;
     const DepthLimit limit = floquet_depth_limit(one.cut, one.modes, speed, {.max_depth = 0.05});
     const FloquetPoint point = floquet_point(one.cut, one.modes, speed, 1.2 * limit.depth);

@@ -147,8 +147,7 @@ TEST(UffFile, OfBinaryNumbersIsOfTheSizeThatItsHeadTells) {
   double value = 0.0;
   std::memcpy(&value, looks_like_the_end.data(), sizeof value);
   const std::string mark = "    58b     1     2          11          32     0     0           0           0";
-  const UffFile content =
-      parse_uff(head_of(form_of(4, 2, 0), mark) + data + looks_like_the_end + "    -1\n", "a.uff");
+  const UffFile content = parse_uff(head_of(form_of(4, 2, 0), mark) + data + looks_like_the_end + "    -1\n", "a.uff");
   EXPECT_EQ(only_function(content).abscissa, (std::vector<double>{1.0, 3.0}));
   EXPECT_EQ(only_function(content).values[1], value);
 }
