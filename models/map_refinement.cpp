@@ -64,7 +64,7 @@ class Explanation {
     if (!alias) return {};
     alias_ = *alias;
     const double heard_now = alias_.of(*frequency);
-    const std::optional<std::size_t> mode = mode_behind(heard_now);
+    const std::optional<std::size_t> mode = mode_behind(*frequency, heard_now);
     if (!mode) return {};
     return solve(*mode, heard_now);
   }
@@ -82,12 +82,12 @@ class Explanation {
   }
 
   // Relative to a shift of the mode, as if the frequency were the mode's own.
-  std::optional<std::size_t> mode_behind(double heard_now) {
+  std::optional<std::size_t> mode_behind(double frequency, double heard_now) {
     double all = 0.0, most = 0.0;
     std::optional<std::size_t> behind;
     for (std::size_t m = 0; m < modes_.size(); ++m) {
       const double own = modes_[m].natural_frequency;
-      if (std::abs(own - heard_.frequency) > kNearMode * heard_.frequency) continue;
+      if (std::abs(own - frequency) > kNearMode * frequency) continue;
       const std::optional<double> probed = heard_at(m, 1.0 + kProbe);
       if (!probed) return {};
       const double sensitivity = std::abs(*probed - heard_now) / (kProbe * own);
