@@ -14,9 +14,17 @@ namespace stillcut {
 namespace {
 
 constexpr std::int64_t kListenToChatter_ns = 300'000'000;
-constexpr std::size_t kLeastHops = 10;      // views with a frequency
-constexpr double kSteadySpeed = 0.003;      // relative
+constexpr std::size_t kLeastHops = 10;  // views with a frequency
+constexpr double kSteadySpeed = 0.003;  // relative
+// Relative, half of the views within it: where the cut changes, its immersion say, the frequency wanders.
+constexpr double kStandingFrequency = 0.003;
 constexpr double kBytesOfLogFrame = 150.0;  // about; for the bar only
+
+double median_frequency(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 Posture own_posture(const Cell& cell) { return posture_of(cell, read_cell_dynamics(cell).map); }
 
@@ -54,11 +62,13 @@ void ChatterCollector::look(const MonitorView& view, const RobotState* robot, st
 
 void ChatterCollector::close() {
   if (listening_ && frequencies_.size() >= kLeastHops) {
-    const auto middle = frequencies_.begin() + static_cast<std::ptrdiff_t>(frequencies_.size() / 2);
-    std::nth_element(frequencies_.begin(), middle, frequencies_.end());
-    open_.heard.frequency = kTwoPi * *middle;
-    open_.heard.axial_depth = open_.cut.axial_depth;
-    cuts_.push_back(open_);
+    const double hz = median_frequency(frequencies_);
+    for (double& frequency : frequencies_) frequency = std::abs(frequency - hz);
+    if (median_frequency(frequencies_) <= kStandingFrequency * hz) {
+      open_.heard.frequency = kTwoPi * hz;
+      open_.heard.axial_depth = open_.cut.axial_depth;
+      cuts_.push_back(open_);
+    }
   }
   frequencies_.clear();
   listening_ = false;

@@ -23,7 +23,8 @@ struct ChatteredCut {
 };
 
 // One regenerative chatter of a single line, at most, for each episode: the median frequency of its first 0.3 s, while
-// the speed stands. Chatter on a spindle order (kind unknown) and of the structure is left out.
+// the speed stands; none where that wanders. Chatter on a spindle order (kind unknown) and of the structure is left
+// out.
 class ChatterCollector {
  public:
   // `posture`: where the cell works when no robot says otherwise.

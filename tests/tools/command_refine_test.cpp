@@ -178,6 +178,8 @@ TEST(ChatterCollector, TakesOneFrequencyAnEpisodeWhileTheSpeedStands) {
   hops.chatter(0.1, 0);
   hops.chatter(0.01, 770);  // too short
   hops.chatter(0.1, 0);
+  for (int i = 0; i < 30; ++i) hops.chatter(0.01, 750 - 2 * i);  // wanders
+  hops.chatter(0.1, 0);
   hops.chatter(0.3, 780, 8000, ChatterKind::unknown);  // on a spindle order
   hops.chatter(0.1, 0);
   hops.chatter(0.1, 790, 9000);  // then its speed is corrected
