@@ -62,6 +62,8 @@ class Core {
   [[nodiscard]] const MonitorView& view() const noexcept { return monitor_.view(); }
   [[nodiscard]] const CoreCounters& counters() const noexcept { return counters_; }
   [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
+  // The newest state; nullptr when none was heard yet.
+  [[nodiscard]] const RobotState* robot() const noexcept { return robot_heard_ ? &robot_ : nullptr; }
   // The diagram in use; nullptr when there is none that fits the posture.
   [[nodiscard]] const LobeDiagram* lobes() const noexcept;
   // That along the announced path; nullptr when none is announced, or it has been travelled.

@@ -30,6 +30,7 @@ int run_stillcut(int argc, char** argv) {
   add_map_command(app);
   add_passes_command(app);
   add_plant_command(app);
+  add_refine_command(app);
   add_replay_command(app);
   add_simulate_command(app);
   add_stability_command(app);

@@ -130,10 +130,16 @@ void read_modes(const CsvTable& table, DynamicsMap& map) {
 }  // namespace
 
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder) {
-  const CsvTable postures = read_csv(folder / "postures.csv");
+  const std::string postures = read_text_file(folder / "postures.csv");  // the first that is missed
+  return parse_dynamics_map(postures, read_text_file(folder / "modes.csv"), folder);
+}
+
+DynamicsMap parse_dynamics_map(std::string_view postures_text, std::string_view modes_text,
+                               const std::filesystem::path& folder) {
+  const CsvTable postures = parse_csv(postures_text, (folder / "postures.csv").string());
   std::vector<const CsvRow*> rows;
   DynamicsMap map = posture_rows(postures, rows);
-  read_modes(read_csv(folder / "modes.csv"), map);
+  read_modes(parse_csv(modes_text, (folder / "modes.csv").string()), map);
   for (std::size_t i = 0; i < map.postures.size(); ++i) {
     Posture& posture = map.postures[i];
     if (posture.modes.empty()) {

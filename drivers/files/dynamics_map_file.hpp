@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "models/dynamics_map.hpp"
@@ -16,6 +17,10 @@ namespace stillcut {
 // damping ratio (between 0 and 1) or stiffness that no structure has; a direction whose length is off 1 by more than 5
 // % (a smaller rounding error is mended). Modes come in rising frequency.
 DynamicsMap read_dynamics_map(const std::filesystem::path& folder);
+
+// The same for text at hand; `folder` is the one named in messages.
+DynamicsMap parse_dynamics_map(std::string_view postures_text, std::string_view modes_text,
+                               const std::filesystem::path& folder);
 
 // postures.csv alone: where the machine stood, no modes yet. Throws InputError as read_dynamics_map.
 DynamicsMap read_postures(const std::filesystem::path& file);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <string_view>
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/frf_csv.hpp"
@@ -23,23 +25,70 @@ constexpr const char* kAxisNames = "xyz";
 // In a line of text of a function, before a number and what follows it.
 constexpr std::string_view kDecayText = "added decay ", kDecayUnit = " 1/s";
 constexpr std::string_view kForceErrorText = "force error ", kForceErrorUnit = " relative";
+constexpr int kLineOfNodes = 7;  // of a dataset 58, after its first
 
 struct NamedUnit {
   const char* name;
   double si;
+  ResponseKind kind = ResponseKind::receptance;  // of a response over force
 };
 constexpr std::array kForceUnits{NamedUnit{"N", 1.0}, NamedUnit{"mN", 1e-3}, NamedUnit{"kN", 1e3},
                                  NamedUnit{"lbf", 4.4482216152605}};
-constexpr std::array kResponseUnits{
-    NamedUnit{"m", 1.0},       NamedUnit{"mm", 1e-3},    NamedUnit{"um", 1e-6},       NamedUnit{"\xC2\xB5m", 1e-6},
-    NamedUnit{"in", 0.0254},   NamedUnit{"m/s", 1.0},    NamedUnit{"mm/s", 1e-3},     NamedUnit{"in/s", 0.0254},
-    NamedUnit{"m/s^2", 1.0},   NamedUnit{"m/s2", 1.0},   NamedUnit{"m/s**2", 1.0},    NamedUnit{"m/s\xC2\xB2", 1.0},
-    NamedUnit{"mm/s^2", 1e-3}, NamedUnit{"mm/s2", 1e-3}, NamedUnit{"in/s^2", 0.0254}, NamedUnit{"g", 9.80665},
-    NamedUnit{"G", 9.80665}};
+// Signs beyond ASCII as UTF-8 and as Latin-1 has them.
+constexpr auto kPerS = ResponseKind::mobility, kPerS2 = ResponseKind::accelerance;
+constexpr std::array kResponseUnits{NamedUnit{"m", 1.0},
+                                    NamedUnit{"mm", 1e-3},
+                                    NamedUnit{"um", 1e-6},
+                                    NamedUnit{"\xC2\xB5m", 1e-6},
+                                    NamedUnit{"\xCE\xBCm", 1e-6},
+                                    NamedUnit{"\xB5m", 1e-6},
+                                    NamedUnit{"in", 0.0254},
+                                    NamedUnit{"m/s", 1.0, kPerS},
+                                    NamedUnit{"mm/s", 1e-3, kPerS},
+                                    NamedUnit{"in/s", 0.0254, kPerS},
+                                    NamedUnit{"m/s^2", 1.0, kPerS2},
+                                    NamedUnit{"m/s2", 1.0, kPerS2},
+                                    NamedUnit{"m/s**2", 1.0, kPerS2},
+                                    NamedUnit{"m/s\xC2\xB2", 1.0, kPerS2},
+                                    NamedUnit{"m/s\xB2", 1.0, kPerS2},
+                                    NamedUnit{"mm/s^2", 1e-3, kPerS2},
+                                    NamedUnit{"mm/s2", 1e-3, kPerS2},
+                                    NamedUnit{"in/s^2", 0.0254, kPerS2},
+                                    NamedUnit{"g", 9.80665, kPerS2},
+                                    NamedUnit{"G", 9.80665, kPerS2}};
 
 bool names_no_unit(const std::string& label) {
   return label.empty() || label == "NONE" || label == "none" || label == "None";
 }
+
+std::optional<NamedUnit> named_unit(std::string_view name, std::span<const NamedUnit> units) {
+  for (const NamedUnit& unit : units)
+    if (name == unit.name) return unit;
+  return {};
+}
+
+// A label of the ordinate may say the force as well: "(m/s^2)/N", "(1/N)*(m/s^2)".
+struct OrdinateLabel {
+  std::string response, force;  // force empty: not said
+};
+
+OrdinateLabel split_label(std::string label) {
+  OrdinateLabel parts;
+  const auto slash = label.rfind('/'), product = label.find(")*");
+  if (label.starts_with("(1/") && product != std::string::npos) {
+    parts.force = label.substr(3, product - 3);
+    label = label.substr(product + 2);
+  } else if (slash != std::string::npos && named_unit(label.substr(slash + 1), kForceUnits)) {
+    parts.force = label.substr(slash + 1);
+    label.resize(slash);
+  }
+  if (label.starts_with('(') && label.ends_with(')')) label = label.substr(1, label.size() - 2);
+  parts.response = label;
+  return parts;
+}
+
+// 0 unknown, 1 general: the writer does not tell the quantity.
+bool is_open(int data_type) { return data_type == 0 || data_type == 1; }
 
 // Reads the functions of one file, one after the other, into a response.
 class FrfReader {
@@ -69,11 +118,14 @@ class FrfReader {
     if (!function.complex) fail(function, "a frequency response of real numbers; export it as complex");
     const std::size_t response = axis_of(function, function.response_direction, "response direction");
     const std::size_t force = axis_of(function, function.reference_direction, "reference direction");
-    const ResponseKind kind = kind_of(function);
+    const OrdinateLabel label = split_label(function.ordinate.units);
+    std::string force_label = function.denominator.units;
+    if (names_no_unit(force_label)) force_label = label.force;
+    const ResponseKind kind = kind_of(function, label.response, force_label);
     no_receptance_ = no_receptance_ || kind != ResponseKind::receptance;
     const bool turned = (function.response_direction < 0) != (function.reference_direction < 0);
-    const double scale = (turned ? -1.0 : 1.0) * unit_of(function, function.ordinate.units, true) /
-                         unit_of(function, function.denominator.units, false);
+    const double scale =
+        (turned ? -1.0 : 1.0) * unit_of(function, label.response, true) / unit_of(function, force_label, false);
     const std::vector<double> hz = frequencies_of(function);
     ComplexValues values = function.values;
     for (std::complex<double>& value : values) value *= scale;
@@ -82,6 +134,10 @@ class FrfReader {
       fail(function, std::string("response ") + kAxisNames[response] + " to force " + kAxisNames[force] +
                          " stands in the file twice; leave one of them");
     entry = receptance_of(kind, hz, values);
+    for (std::size_t i = 0; i < hz.size(); ++i)
+      if ((hz[i] > 0.0 || kind == ResponseKind::receptance) &&
+          !(std::isfinite(entry[i].real()) && std::isfinite(entry[i].imag())))
+        fail(function, "point " + std::to_string(i + 1) + " is not finite as receptance in m/N; are its units right?");
     add_decay(function);
   }
 
@@ -131,30 +187,34 @@ class FrfReader {
     const int axis = std::abs(direction);
     if (axis < 1 || axis > 3)
       fail(function, std::string(name) + ": " + std::to_string(direction) +
-                         " is no translation; must be 1, 2 or 3 for x, y, z, or negative");
+                         " is no translation; give the points their directions in the instrument, or 1, 2 or 3 for x, "
+                         "y, z in line " +
+                         std::to_string(function.line + kLineOfNodes));
     return static_cast<std::size_t>(axis - 1);
   }
 
   static bool is_force(int data_type) { return data_type == kUffReactionForce || data_type == kUffExcitationForce; }
 
-  ResponseKind kind_of(const UffFunction& function) const {
+  // A quantity that is left open follows from its unit's label.
+  ResponseKind kind_of(const UffFunction& function, const std::string& response, const std::string& force) const {
     const int over = function.ordinate.data_type, under = function.denominator.data_type;
     if (is_force(over) && !is_force(under)) fail(function, "force over response: swapped; export response over force");
-    if (!is_force(under))
+    if (!is_force(under) && !(is_open(under) && named_unit(force, kForceUnits)))
       fail(function, "ordinate's denominator: data type " + std::to_string(under) + " is no force, 13 or 9");
     if (over == kUffDisplacement) return ResponseKind::receptance;
     if (over == kUffVelocity) return ResponseKind::mobility;
     if (over == kUffAcceleration) return ResponseKind::accelerance;
+    if (const auto unit = named_unit(response, kResponseUnits); unit && is_open(over)) return unit->kind;
     fail(function,
          "ordinate: data type " + std::to_string(over) + " is no displacement (8), velocity (11) or acceleration (12)");
   }
 
   // In SI, of the response (length with its powers of time) or the force.
-  double unit_of(const UffFunction& function, std::string label, bool response) {
+  double unit_of(const UffFunction& function, const std::string& label, bool response) {
     std::optional<double> by_dataset, by_label;
     if (content_.units) by_dataset = 1.0 / (response ? content_.units->length : content_.units->force);
-    if (response) label = numerator(label);
-    if (!names_no_unit(label)) by_label = named_unit(label, response);
+    const auto unit = response ? named_unit(label, kResponseUnits) : named_unit(label, kForceUnits);
+    if (unit) by_label = unit->si;
     if (!names_no_unit(label) && !by_label && !by_dataset)
       fail(function, (response ? "ordinate: unit \"" : "ordinate's denominator: unit \"") + label +
                          "\" is not known; add the units as dataset 164");
@@ -164,23 +224,6 @@ class FrfReader {
                          "; correct one of them");
     if (!by_label && !by_dataset) si_assumed_ = true;
     return by_label.value_or(by_dataset.value_or(1.0));
-  }
-
-  // "(m/s^2)/N" says both.
-  static std::string numerator(std::string label) {
-    const auto slash = label.rfind('/');
-    if (slash != std::string::npos && named_unit(label.substr(slash + 1), false)) label.resize(slash);
-    if (label.starts_with('(') && label.ends_with(')')) label = label.substr(1, label.size() - 2);
-    return label;
-  }
-
-  static std::optional<double> named_unit(const std::string& name, bool response) {
-    const auto find = [&](const auto& units) -> std::optional<double> {
-      for (const NamedUnit& unit : units)
-        if (name == unit.name) return unit.si;
-      return {};
-    };
-    return response ? find(kResponseUnits) : find(kForceUnits);
   }
 
   // Those of the first function are the file's.

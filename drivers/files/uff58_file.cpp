@@ -93,6 +93,13 @@ class UffReader {
     return begin < line.size() ? uff_bare(line.substr(begin, width)) : std::string_view();
   }
 
+  // Up to 80 columns of a writer's own words; a stray carriage return would break a line when written.
+  static std::string words(std::string_view text) {
+    std::string result(uff_bare(text.substr(0, 80)));
+    std::replace(result.begin(), result.end(), '\r', ' ');
+    return result;
+  }
+
   // A field that is left empty is 0.
   int whole(std::string_view line, std::size_t begin, std::size_t width, const char* name) const {
     const std::string_view text = field(line, begin, width);
@@ -116,7 +123,7 @@ class UffReader {
     UffUnits units;
     const std::string_view name = line_of("the units");
     units.code = whole(name, 0, 10, "units code");
-    units.description = field(name, 10, 20);
+    units.description = words(field(name, 10, 20));
     units.line = begin;
     const std::string_view factors = line_of("the factors of the units");
     units.length = real(factors, 0, 25, "factor of length");
@@ -129,14 +136,14 @@ class UffReader {
 
   UffAxis read_axis(const char* what) {
     const std::string_view line = line_of(what);
-    return {whole(line, 0, 10, what), std::string(field(line, 26, 20)), std::string(field(line, 47, 20))};
+    return {whole(line, 0, 10, what), words(field(line, 26, 20)), words(field(line, 47, 20))};
   }
 
   UffFunction read_function(std::string_view head, bool binary, int begin) {
     const int head_at = line_;
     UffFunction function;
     function.line = begin;
-    for (std::string& text : function.id) text = uff_bare(line_of("the five lines of text"));
+    for (std::string& text : function.id) text = words(line_of("the five lines of text"));
     const std::string_view place = line_of("the record of its nodes");
     function.type = whole(place, 0, 5, "function type");
     function.response_node = whole(place, 41, 10, "response node");
@@ -150,6 +157,8 @@ class UffReader {
     function.even = layout.even;
     const double first = real(form, 30, 13, "begin of the abscissa"), step = real(form, 43, 13, "step of the abscissa");
     if (layout.even && !(step > 0.0) && layout.points > 1) fail(line_, "step of the abscissa: must be above 0");
+    if (layout.even && !std::isfinite(first + static_cast<double>(layout.points - 1) * step))
+      fail(line_, "step of the abscissa: leads to a number that is not finite");
     function.abscissa_axis = read_axis("its abscissa");
     function.ordinate = read_axis("its ordinate");
     function.denominator = read_axis("its ordinate's denominator");
@@ -217,8 +226,11 @@ class UffReader {
     if (in_head(13, 6) != "2") fail(head_at, "floating-point format: must be 2, IEEE 754");
     if (in_head(19, 12) != std::to_string(kHeaderLines)) fail(head_at, "number of lines before the data: must be 11");
     const std::size_t value = layout.double_precision ? 8 : 4, in_values = (layout.complex ? 2 : 1) * value;
-    // The smaller first: that its end stands within the data of the larger is as good as impossible.
-    for (const std::size_t abscissa : {std::size_t{layout.even ? 0U : 4U}, layout.even ? 0 : value}) {
+    // What the head tells first, then the smaller: that its end stands within the data of the larger is as good as
+    // impossible.
+    std::array<std::size_t, 2> widths{layout.even ? 0U : 4U, layout.even ? 0 : value};
+    if (in_head(31, 12) == std::to_string(layout.points * (widths[1] + in_values))) std::swap(widths[0], widths[1]);
+    for (const std::size_t abscissa : widths) {
       const std::size_t size = layout.points * (abscissa + in_values);
       if (size > bytes_.size()) continue;
       const std::optional<std::size_t> end = end_of_dataset(bytes_.substr(size));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "drivers/files/uff58_file.hpp"
@@ -25,7 +26,7 @@ std::string columns(std::size_t width, const char* format, Values... values) {
 std::string short_number(double value) { return columns(13, "%13.5E", value); }
 std::string long_number(double value) { return columns(20, "%20.12E", value); }
 
-double as_short(double value) { return std::stod(short_number(value)); }
+double as_short(double value) { return std::strtod(short_number(value).c_str(), nullptr); }
 
 void check_text(const std::string& text, std::size_t longest) {
   if (text.size() > longest || text.find_first_of("\r\n") != std::string::npos)

@@ -90,6 +90,42 @@ TEST(FrfFile, TakesUnitsFromTheDatasetTheLabelsOrSaysThatItAssumesSi) {
   expect_near(first(content_of({f}), 0), si);
 }
 
+// The head of a file that an analyser wrote where the quantities were left open (an open data set of the University of
+// Ljubljana's has this form, in UTF-8), and what its labels say. Its directions are open too: no one but the user knows
+// them.
+TEST(FrfFile, TakesAnOpenQuantityFromItsLabelButNoOpenDirection) {
+  const auto file = [](const char* unit, int direction) {
+    char nodes[100];
+    std::snprintf(nodes, sizeof nodes,
+                  "    4         0    0         0 NONE               0%4d NONE               0%4d\n", direction,
+                  direction);
+    return std::string(
+               "    -1\n    58\nref6\nNONE\n23-Mar-17 19:02:23\nRecord 1 of Dataset no 58\nH1 : #  2 / #  1\n") +
+           nodes +
+           "         5         2         1 1.00000e+00  1.95313e-01  0.00000e+00 \n"
+           "        18    0    0    0 NONE                 Hz                  \n"
+           "         1    0    0    0 Frequency Function   " +
+           unit +
+           "\n         0    0    0    0 NONE                 NONE                \n"
+           "         0    0    0    0 NONE                 NONE                \n"
+           " 3.00000e+00 -4.00000e+00 -5.99924e-02 -5.53260e-02 \n    -1\n";
+  };
+  const auto first = [&](const char* unit) {
+    const FrfFile read = frf_of(parse_uff(file(unit, 1), "a.uff"), "a.uff");
+    EXPECT_EQ(read.notes.size(), 0U);
+    return read.response.receptance[0][0][0];
+  };
+  const double w = 2.0 * std::numbers::pi;
+  const std::complex<double> h{3, -4}, iw{0.0, w};
+  for (const char* unit : {"(1/N)*(m/s\xC2\xB2)", "(1/N)*(m/s\xB2)", "(m/s^2)/N"})
+    expect_near(first(unit), h / (iw * iw));
+  expect_near(first("mm/s/kN"), 1e-6 * h / iw);
+  expect_near(first("(1/mN)*(m)"), 1e3 * h);
+  EXPECT_THAT(message_of<InputError>([&] { (void)frf_of(parse_uff(file("m/N", 0), "a.uff"), "a.uff"); }),
+              HasSubstr("a.uff:1: response direction: 0 is no translation; give the points their directions in the "
+                        "instrument, or 1, 2 or 3 for x, y, z in line 8"));
+}
+
 TEST(FrfFile, LeavesOutWhatIsNoResponseAndZeroHertz) {
   UffFunction f = accelerance(1, 1), coherence = accelerance(1, 1);
   f.abscissa = {0.0, 20.0};
@@ -113,7 +149,15 @@ TEST(FrfFile, NamesFileAndLineOfWhatIsWrong) {
   EXPECT_THAT(message([](F& f) { f.response_direction = 4; }), HasSubstr("a.uff:60: response direction: 4"));
   EXPECT_THAT(message([](F& f) { f.reference_direction = 0; }), HasSubstr("a.uff:60: reference direction: 0"));
   EXPECT_THAT(message([](F& f) { std::swap(f.ordinate, f.denominator); }), HasSubstr("a.uff:60: force over response"));
-  EXPECT_THAT(message([](F& f) { f.denominator.data_type = 0; }), HasSubstr("data type 0 is no force"));
+  EXPECT_THAT(message([](F& f) { f.denominator = {15, "Force", "N"}; }), HasSubstr("data type 15 is no force"));
+  EXPECT_THAT(message([](F& f) { f.denominator = {0, "NONE", "NONE"}; }), HasSubstr("data type 0 is no force"));
+  EXPECT_THAT(message([](F& f) { f.ordinate = {1, "Function", "NONE"}; }), HasSubstr("data type 1 is no displacement"));
+  EXPECT_THAT(message([](F& f) {
+                f.values[1] = 1e308;
+                f.abscissa = {1e-9, 20.0};
+                f.values[0] = 1e308;
+              }),
+              HasSubstr("a.uff:60: "));
   EXPECT_THAT(message([](F& f) { f.ordinate.data_type = 15; }), HasSubstr("data type 15 is no displacement"));
   EXPECT_THAT(message([](F& f) { f.ordinate.units = "mm/s^2"; }),
               HasSubstr("contradicts the units of dataset 164, line 1"));

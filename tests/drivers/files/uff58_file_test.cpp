@@ -139,6 +139,42 @@ TEST(UffFile, OfBinaryNumbersIsRead) {
   }
 }
 
+// Rows of twelve bytes, whose abscissa is in single precision, would end where this value looks like the dataset's end.
+TEST(UffFile, OfBinaryNumbersIsOfTheSizeThatItsHeadTells) {
+  std::string data;
+  for (const double x : {1.0, 2.0, 3.0}) append(data, x, true);
+  const std::string looks_like_the_end = "    -1\n ";
+  double value = 0.0;
+  std::memcpy(&value, looks_like_the_end.data(), sizeof value);
+  const std::string mark = "    58b     1     2          11          32     0     0           0           0";
+  const UffFile content = parse_uff(head_of(form_of(4, 2, 0), mark) + data + looks_like_the_end + "    -1\n", "a.uff");
+  EXPECT_EQ(only_function(content).abscissa, (std::vector<double>{1.0, 3.0}));
+  EXPECT_EQ(only_function(content).values[1], value);
+}
+
+// Heads as catman and others write them: three digits of exponent, blanks up to another width, none filled columns.
+TEST(UffFile, OfAnInstrumentsHabitsIsRead) {
+  const std::string blanks(66, ' ');
+  const std::string text = "    -1  " + blanks + "\n    58  " + blanks + "\n1x : m/s\xC2\xB2" + blanks +
+                           "\nUFF58 file created by HBM catman\n30-Apr-20 19:12:52\n" + std::string(200, 'x') +
+                           "\nNO\rNE\n"
+                           "    1         0    0         0 NONE               0   0 NONE               0   0\n"
+                           "         2         3         1 0.00000E+000 5.00000E-005 0.00000E+000           \n"
+                           "        17    0    0    0 Time                 s                                \n"
+                           "         1    0    0    0 1x                   m/s\xC2\xB2                             \n"
+                           "         0    0    0    0 NONE                 NONE                             \n"
+                           "         0    0    0    0 NONE                 NONE                             \n"
+                           " -3.81956E+00 -3.56616E+00 -2.98987E+00" +
+                           blanks + "\n    -1" + blanks + "\n";
+  const UffFunction function = only_function(parse_uff(text, "a.uff"));
+  EXPECT_EQ(function.type, 1);
+  EXPECT_EQ(function.abscissa, (std::vector<double>{0.0, 5e-5, 1e-4}));
+  EXPECT_EQ(function.values, (std::vector<std::complex<double>>{-3.81956, -3.56616, -2.98987}));
+  EXPECT_EQ(function.id[3], std::string(80, 'x'));
+  EXPECT_EQ(function.id[4], "NO NE");
+  EXPECT_EQ(function.ordinate.units, "m/s\xC2\xB2");
+}
+
 UffFile random_content(std::mt19937_64& random) {
   const auto flip = [&] { return std::uniform_int_distribution<>(0, 1)(random) == 1; };
   UffFile content;
@@ -332,6 +368,12 @@ TEST(UffFile, SpoiltIsReadOrRefused) {
   }
   EXPECT_GT(read, 300);
   EXPECT_GT(refused, 300);
+}
+
+TEST(UffFile, RefusesAnEvenAbscissaThatOverflows) {
+  const std::string text = head_of(form_of(5, 2, 1, " 9.9000E+307", " 9.9000E+307")) +
+                           std::string("  1.00000E+00  1.00000E+00\n") + "    -1\n";
+  EXPECT_THAT(message_of<InputError>([&] { (void)parse_uff(text, "a.uff"); }), HasSubstr("not finite"));
 }
 
 TEST(UffFile, IsNotWrittenOfWhatItCannotHold) {
