@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/frf_csv.hpp"
 #include "drivers/files/input_error.hpp"
+#include "drivers/files/measured_units.hpp"
 #include "drivers/files/text_file.hpp"
 #include "drivers/files/uff_numbers.hpp"
 #include "models/machining.hpp"
@@ -27,44 +27,8 @@ constexpr std::string_view kDecayText = "added decay ", kDecayUnit = " 1/s";
 constexpr std::string_view kForceErrorText = "force error ", kForceErrorUnit = " relative";
 constexpr int kLineOfNodes = 7;  // of a dataset 58, after its first
 
-struct NamedUnit {
-  const char* name;
-  double si;
-  ResponseKind kind = ResponseKind::receptance;  // of a response over force
-};
-constexpr std::array kForceUnits{NamedUnit{"N", 1.0}, NamedUnit{"mN", 1e-3}, NamedUnit{"kN", 1e3},
-                                 NamedUnit{"lbf", 4.4482216152605}};
-// Signs beyond ASCII as UTF-8 and as Latin-1 has them.
-constexpr auto kPerS = ResponseKind::mobility, kPerS2 = ResponseKind::accelerance;
-constexpr std::array kResponseUnits{NamedUnit{"m", 1.0},
-                                    NamedUnit{"mm", 1e-3},
-                                    NamedUnit{"um", 1e-6},
-                                    NamedUnit{"\xC2\xB5m", 1e-6},
-                                    NamedUnit{"\xCE\xBCm", 1e-6},
-                                    NamedUnit{"\xB5m", 1e-6},
-                                    NamedUnit{"in", 0.0254},
-                                    NamedUnit{"m/s", 1.0, kPerS},
-                                    NamedUnit{"mm/s", 1e-3, kPerS},
-                                    NamedUnit{"in/s", 0.0254, kPerS},
-                                    NamedUnit{"m/s^2", 1.0, kPerS2},
-                                    NamedUnit{"m/s2", 1.0, kPerS2},
-                                    NamedUnit{"m/s**2", 1.0, kPerS2},
-                                    NamedUnit{"m/s\xC2\xB2", 1.0, kPerS2},
-                                    NamedUnit{"m/s\xB2", 1.0, kPerS2},
-                                    NamedUnit{"mm/s^2", 1e-3, kPerS2},
-                                    NamedUnit{"mm/s2", 1e-3, kPerS2},
-                                    NamedUnit{"in/s^2", 0.0254, kPerS2},
-                                    NamedUnit{"g", 9.80665, kPerS2},
-                                    NamedUnit{"G", 9.80665, kPerS2}};
-
 bool names_no_unit(const std::string& label) {
   return label.empty() || label == "NONE" || label == "none" || label == "None";
-}
-
-std::optional<NamedUnit> named_unit(std::string_view name, std::span<const NamedUnit> units) {
-  for (const NamedUnit& unit : units)
-    if (name == unit.name) return unit;
-  return {};
 }
 
 // A label of the ordinate may say the force as well: "(m/s^2)/N", "(1/N)*(m/s^2)".
@@ -78,7 +42,7 @@ OrdinateLabel split_label(std::string label) {
   if (label.starts_with("(1/") && product != std::string::npos) {
     parts.force = label.substr(3, product - 3);
     label = label.substr(product + 2);
-  } else if (slash != std::string::npos && named_unit(label.substr(slash + 1), kForceUnits)) {
+  } else if (slash != std::string::npos && force_unit(label.substr(slash + 1))) {
     parts.force = label.substr(slash + 1);
     label.resize(slash);
   }
@@ -199,12 +163,12 @@ class FrfReader {
   ResponseKind kind_of(const UffFunction& function, const std::string& response, const std::string& force) const {
     const int over = function.ordinate.data_type, under = function.denominator.data_type;
     if (is_force(over) && !is_force(under)) fail(function, "force over response: swapped; export response over force");
-    if (!is_force(under) && !(is_open(under) && named_unit(force, kForceUnits)))
+    if (!is_force(under) && !(is_open(under) && force_unit(force)))
       fail(function, "ordinate's denominator: data type " + std::to_string(under) + " is no force, 13 or 9");
     if (over == kUffDisplacement) return ResponseKind::receptance;
     if (over == kUffVelocity) return ResponseKind::mobility;
     if (over == kUffAcceleration) return ResponseKind::accelerance;
-    if (const auto unit = named_unit(response, kResponseUnits); unit && is_open(over)) return unit->kind;
+    if (const auto unit = motion_unit(response); unit && is_open(over)) return unit->kind;
     fail(function,
          "ordinate: data type " + std::to_string(over) + " is no displacement (8), velocity (11) or acceleration (12)");
   }
@@ -213,8 +177,10 @@ class FrfReader {
   double unit_of(const UffFunction& function, const std::string& label, bool response) {
     std::optional<double> by_dataset, by_label;
     if (content_.units) by_dataset = 1.0 / (response ? content_.units->length : content_.units->force);
-    const auto unit = response ? named_unit(label, kResponseUnits) : named_unit(label, kForceUnits);
-    if (unit) by_label = unit->si;
+    if (!response)
+      by_label = force_unit(label);
+    else if (const auto unit = motion_unit(label))
+      by_label = unit->si;
     if (!names_no_unit(label) && !by_label && !by_dataset)
       fail(function, (response ? "ordinate: unit \"" : "ordinate's denominator: unit \"") + label +
                          "\" is not known; add the units as dataset 164");

@@ -1,37 +1,25 @@
-// Units of force and acceleration as instruments write them, in SI.
+// Units of forces and motions as instruments write them, in SI.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string_view>
-#include <utility>
+
+#include "models/frequency_response.hpp"
 
 namespace stillcut {
 
 // N of one; nothing where the name is of no force.
-[[nodiscard]] constexpr std::optional<double> force_unit(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
-      {{"N", 1.0}, {"mN", 1e-3}, {"kN", 1e3}, {"lbf", 4.4482216152605}}};
-  for (const auto& [unit, si] : kUnits)
-    if (name == unit) return si;
-  return {};
-}
+[[nodiscard]] std::optional<double> force_unit(std::string_view name);
+
+struct MotionUnit {
+  double si = 1.0;                               // m, m/s or m/s^2
+  ResponseKind kind = ResponseKind::receptance;  // of a motion in it over force
+};
+
+// Nothing where the name is of no motion.
+[[nodiscard]] std::optional<MotionUnit> motion_unit(std::string_view name);
 
 // m/s^2 of one; nothing where the name is of no acceleration.
-[[nodiscard]] constexpr std::optional<double> acceleration_unit(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, double>, 10> kUnits{{{"m/s^2", 1.0},
-                                                                        {"m/s2", 1.0},
-                                                                        {"m/s**2", 1.0},
-                                                                        {"m/s\xC2\xB2", 1.0},
-                                                                        {"m/s\xB2", 1.0},
-                                                                        {"mm/s^2", 1e-3},
-                                                                        {"mm/s2", 1e-3},
-                                                                        {"in/s^2", 0.0254},
-                                                                        {"g", 9.80665},
-                                                                        {"G", 9.80665}}};
-  for (const auto& [unit, si] : kUnits)
-    if (name == unit) return si;
-  return {};
-}
+[[nodiscard]] std::optional<double> acceleration_unit(std::string_view name);
 
 }  // namespace stillcut
