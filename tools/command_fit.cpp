@@ -87,6 +87,12 @@ void run_fit(const FitOptions& options) {
   Progress progress("fitting");
   const FitStudy study = fit_map(question, [&](double share) { progress.update(share); });
   progress.finish();
+  std::error_code none;
+  if (!study.without_responses.empty() &&
+      std::filesystem::equivalent(options.postures, std::filesystem::path(options.out) / "postures.csv", none))
+    throw InputError(options.postures, 0,
+                     "would lose posture " + study.without_responses.front() +
+                         ", which no file of responses is of; write the map to another folder");
   write_fitted_map(study, options.out);
   if (!options.plots.empty()) draw(study, options.plots);
   if (options.json)

@@ -49,7 +49,8 @@ std::vector<std::string> put_in_order(const FitQuestion& question, FitStudy& stu
   }
   const DynamicsMap all = read_postures(question.postures);
   study.map.has_joints = all.has_joints;
-  std::vector<std::string> ordered, without;
+  std::vector<std::string> ordered;
+  std::vector<std::string>& without = study.without_responses;
   for (const Posture& posture : all.postures) {
     const auto file = file_of(posture.id);
     if (file == files.end()) {
