@@ -15,10 +15,10 @@ constexpr Index kBlock = 64;           // lines that share a median, at least
 constexpr double kBlockGrowth = 0.05;  // of the lines so far: blocks widen with frequency
 constexpr Index kLinesForAmounts = 1024;
 constexpr int kNoiseSteps = 60;
-constexpr double kOutlier = 25.0;      // times the variance: more is no noise, one in 10^11
-constexpr double kLeastShare = 1e-12;  // of the mean square of the values: what counts as none
-constexpr int kMostAlike = 32;         // lines apart
-constexpr double kNothing = 1e-12;     // of the mean square of the largest entry: no sensor tells so little from none
+constexpr double kOutlier = 25.0;  // times the variance: more is no noise, one in 10^11
+constexpr double kLeastShare = 1e-13, kLeastUsual = 1e-16;
+constexpr int kMostAlike = 32;      // lines apart
+constexpr double kNothing = 1e-12;  // of the mean square of the largest entry: no sensor tells so little from none
 
 // First lines of the blocks, and the end.
 std::vector<Index> blocks_of(Index count) {
@@ -64,33 +64,40 @@ Eigen::VectorXd smooth_mean(const Eigen::VectorXd& squares, double least) {
   return result;
 }
 
-double least_variance(const FrfEntry& entry) { return std::max(kLeastShare * entry.values.cwiseAbs2().mean(), 1e-300); }
+// What counts as none: so little of a value itself and of the entry's usual ones that no instrument tells it.
+Eigen::VectorXd least_variance(const Eigen::VectorXcd& values) {
+  const Eigen::VectorXd squares = values.cwiseAbs2();
+  const double usual = median({squares.data(), squares.data() + squares.size()});
+  return (kLeastShare * squares).array() + std::max(kLeastUsual * usual, 1e-300);
+}
 
 // Amounts of the shapes (columns, a row a line) that make the squares most probable: sum of ln v + square/v is least.
 // Multiplicative steps that never make it larger; amounts stay positive.
-Eigen::VectorXd most_probable_variance(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes, double least) {
+Eigen::VectorXd most_probable_variance(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes,
+                                       const Eigen::VectorXd& least) {
   // Four numbers need no more lines than this.
   const Index every = std::max<Index>(1, squares.size() / kLinesForAmounts), count = (squares.size() - 1) / every + 1;
   const Eigen::VectorXd some = squares(Eigen::seqN(0, count, every));
   const Eigen::MatrixXd parts = shapes(Eigen::seqN(0, count, every), Eigen::all);
+  const Eigen::VectorXd floor = least(Eigen::seqN(0, count, every));
   Eigen::VectorXd amounts =
       some.mean() / static_cast<double>(parts.cols()) * parts.colwise().mean().cwiseInverse().transpose();
   for (int step = 0; step < kNoiseSteps; ++step) {
-    const Eigen::VectorXd inverse = ((parts * amounts).array() + least).inverse();
+    const Eigen::VectorXd inverse = (parts * amounts + floor).cwiseInverse();
     const Eigen::VectorXd pull = some.cwiseProduct(inverse).cwiseMin(kOutlier).cwiseProduct(inverse);
     amounts.array() *= ((parts.transpose() * pull).array() / (parts.transpose() * inverse).array()).sqrt();
   }
-  return (shapes * amounts).array() + least;
+  return shapes * amounts + least;
 }
 
 // Of one entry: `error` is what stands beside the `fitted` values.
 Eigen::VectorXd variance_of(const Eigen::VectorXd& omega, const Eigen::VectorXcd& error, const Eigen::VectorXcd& fitted,
-                            double least) {
+                            const Eigen::VectorXd& least) {
   const Eigen::VectorXd squares = error.cwiseAbs2();
   const Eigen::VectorXd rising = (omega[omega.size() - 1] / omega.array()).square();
   Eigen::MatrixXd shapes(squares.size(), 4);
   shapes << Eigen::VectorXd::Ones(squares.size()), rising, rising.cwiseAbs2(), fitted.cwiseAbs2();
-  shapes.col(3).array() += least;
+  shapes.col(3) += least;
   const Eigen::VectorXd mixed = most_probable_variance(squares, shapes, least);
   return mixed.cwiseProduct(smooth_mean(squares.cwiseQuotient(mixed), 1e-6)).cwiseMax(least);
 }
@@ -122,7 +129,7 @@ std::vector<Eigen::VectorXd> noise_of_differences(const FrfLines& lines,
       const Index at = std::clamp<Index>(n, 1, count - 2);
       error[n] = (rest[at - 1] - 2.0 * rest[at] + rest[at + 1]) / std::sqrt(6.0);
     }
-    result.push_back(variance_of(lines.omega, error, entry.values, least_variance(entry)));
+    result.push_back(variance_of(lines.omega, error, entry.values, least_variance(entry.values)));
   }
   lend_noise(lines, result);
   return result;
@@ -132,7 +139,7 @@ std::vector<Eigen::VectorXd> noise_of_remainder(const FrfLines& lines, const std
   std::vector<Eigen::VectorXd> result;
   for (std::size_t e = 0; e < left_over.size(); ++e) {
     const FrfEntry& entry = lines.entries[e];
-    result.push_back(variance_of(lines.omega, left_over[e], entry.values - left_over[e], least_variance(entry)));
+    result.push_back(variance_of(lines.omega, left_over[e], entry.values - left_over[e], least_variance(entry.values)));
   }
   lend_noise(lines, result);
   return result;

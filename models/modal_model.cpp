@@ -13,7 +13,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 
 constexpr double kLargestLogMove = 0.3;
-constexpr double kMostFittedDamping = 0.4;
+constexpr double kMostFittedDamping = 0.8;
 constexpr Index kLinesAtOnce = 128;  // of the table of basis functions: it stays in the processor's cache
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::array kDampings{0.001, 0.0025, 0.006, 0.015, 0.035, 0.08, 0.12};
+constexpr std::array kDampings{0.001, 0.0025, 0.006, 0.015, 0.035, 0.08, 0.2, 0.4};
 constexpr double kStepHalfWidths = 0.5;   // of the half-width zeta w from one frequency to the next
 constexpr double kReachHalfWidths = 8.0;  // on both sides of it
 constexpr Index kLeastReach = 6;          // lines

@@ -13,7 +13,7 @@ struct MissingMode {
                       // the number of entries
 };
 
-// The mode that would explain most of it; nothing without lines. Damping from 0.1 to 12 %.
+// The mode that would explain most of it; nothing without lines. Damping from 0.1 to 40 %.
 [[nodiscard]] std::optional<MissingMode> missing_mode(const std::vector<Eigen::VectorXcd>& left_over,
                                                       const FrfLines& lines, const FrfWeights& weights);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <optional>
 
@@ -13,12 +14,13 @@ namespace stillcut {
 namespace {
 
 constexpr std::size_t kMostTerms = 40;
-constexpr int kMostRounds = 60;
+constexpr int kMostRounds = 60, kMostDrops = 6;
 // Of a fit that is gone on with anyway, and of one that decides whether a mode is worth its price (50 or more).
 constexpr FitEffort kQuick{12, 1.0, 1e-3}, kDeciding{30, 1.0, 1e-4}, kLast{40, 1e-3, 1e-9};
 constexpr std::size_t kMostSplit = 3;  // terms
 constexpr double kSplitApart = 0.01;   // half of what close modes are apart
-constexpr double kMostTermDamping = 0.3;
+constexpr double kLeastOfResponse = 2e-3;
+constexpr double kMostTermDamping = 0.6;
 constexpr double kLeastTermDamping = 2e-5;
 
 void refit(SelectedModes& modes, const FrfLines& lines, const FitEffort& effort = kQuick) {
@@ -37,6 +39,22 @@ void weigh(SelectedModes& modes, const FrfLines& lines) {
   modes.alike = lines_alike(rest, modes.weights);
 }
 
+// How much of the response at its own frequency a term is: what is less than instruments are true to corrects another
+// mode's shape and is none of the structure.
+double share_of_response(const ModalModel& model, const ModalTerm& term) {
+  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, term.pole.natural_frequency);
+  Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
+  for (const ModalTerm& other : model.terms)
+    sum += pole_response(other.pole, at)[0] * (other.root * other.root.transpose()).cast<std::complex<double>>();
+  return term.root.squaredNorm() / (2.0 * term.pole.damping_ratio * sum.norm());
+}
+
+double worth_of(const SelectedModes& modes, std::size_t r, const FrfLines& lines) {
+  const ModalTerm& term = modes.fit.model.terms[r];
+  if (!can_be_mode(term.pole, lines) || share_of_response(modes.fit.model, term) < kLeastOfResponse) return 0.0;
+  return significance(modes.fit, r);
+}
+
 // The weakest first; tells whether any was taken away.
 bool drop_needless(SelectedModes& modes, const FrfLines& lines) {
   bool dropped = false;
@@ -45,7 +63,7 @@ bool drop_needless(SelectedModes& modes, const FrfLines& lines) {
     std::size_t weakest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t r = 0; r < terms.size(); ++r) {
-      const double told = can_be_mode(terms[r].pole, lines) ? significance(modes.fit, r) : 0.0;
+      const double told = worth_of(modes, r, lines);
       if (told < least) {
         least = told;
         weakest = r;
@@ -144,7 +162,7 @@ SelectedModes started(const FrfLines& lines, const std::vector<Pole>& poles, con
 double price_of(const SelectedModes& modes, double parameters) {
   double values = 0.0;
   for (const Eigen::VectorXd& weight : modes.weights) values += 2.0 * static_cast<double>(weight.size());
-  return parameters * std::log(values) * modes.alike;
+  return parameters * std::log(values) * modes.alike * std::max(1.0, modes.fit.chi_square / values);
 }
 
 bool can_be_mode(const Pole& pole, const FrfLines& lines) {
@@ -161,10 +179,12 @@ FrfWeights rough_weights(const FrfLines& lines) {
 SelectedModes select_modes(const FrfLines& lines, const std::vector<Pole>& start, const FrfWeights& weights,
                            const std::function<void(double)>& progress) {
   SelectedModes modes = started(lines, start, weights);
-  for (int round = 0; round < kMostRounds; ++round) {
+  int drops = 0;  // what is added and dropped in turn would go on for ever
+  for (int round = 0; round < kMostRounds && drops < kMostDrops; ++round) {
     weigh_roughly(modes, lines);
     refit(modes, lines);
     const bool dropped = drop_needless(modes, lines);
+    drops += dropped ? 1 : 0;
     if (!add_missing(modes, lines) && !dropped) break;
     if (progress) progress(0.3 + 0.5 * round / kMostRounds);
   }

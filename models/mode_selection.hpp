@@ -14,7 +14,7 @@ struct SelectedModes {
   double alike = 1.0;  // lines that say the same (lines_alike): variances of what was fitted grow by it
 };
 
-// What chi square has to fall by for `parameters` more.
+// What chi square has to fall by for `parameters` more: more where it tells that the noise was taken too low.
 [[nodiscard]] double price_of(const SelectedModes& modes, double parameters);
 
 // In the band, with damping that a mode of a structure has.

@@ -12,7 +12,6 @@ namespace stillcut {
 
 namespace {
 
-constexpr double kEndOfRange = 0.99;  // of full scale: amplifiers bend before they clip
 constexpr std::size_t kShortestRecord = 64;
 
 std::size_t samples_during(double seconds, double sample_rate_hz) {
@@ -34,6 +33,12 @@ void require_channel(std::span<const double> values, const std::string& name) {
     throw std::invalid_argument(name + " is zero throughout: check its cable, or leave the channel out");
 }
 
+bool overloaded(std::span<const double> values, double full_scale) {
+  return std::ranges::any_of(values, [&](double value) { return std::abs(value) >= kEndOfRange * full_scale; });
+}
+
+}  // namespace
+
 void require_tap_settings(const TapSettings& s) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(what);
@@ -54,12 +59,6 @@ void require_tap_settings(const TapSettings& s) {
   require(s.highest_of_rate > 0.0 && s.highest_of_rate < 0.5,
           "the highest frequency must be below half of the sample rate");
 }
-
-bool overloaded(std::span<const double> values, double full_scale) {
-  return std::ranges::any_of(values, [&](double value) { return std::abs(value) >= kEndOfRange * full_scale; });
-}
-
-}  // namespace
 
 const char* describe(TapFault fault) noexcept {
   switch (fault) {
@@ -145,9 +144,13 @@ std::vector<TapHit> find_hits(const TapRecording& recording, const TapSettings& 
     const auto response_overloaded = [&](const std::vector<double>& values) {
       return !values.empty() && overloaded(part(values, begin), settings.acceleration_full_scale_m_per_s2);
     };
-    if (overloaded(part(force, begin), settings.force_full_scale_n))
+    const auto told = [&](const std::vector<std::size_t>& overloads) {
+      const auto first = std::ranges::lower_bound(overloads, begin);
+      return first != overloads.end() && *first < record_end;
+    };
+    if (told(recording.force_overloads) || overloaded(part(force, begin), settings.force_full_scale_n))
       hit.fault = TapFault::force_overload;
-    else if (std::ranges::any_of(recording.acceleration, response_overloaded))
+    else if (told(recording.response_overloads) || std::ranges::any_of(recording.acceleration, response_overloaded))
       hit.fault = TapFault::response_overload;
     else if (std::ranges::any_of(part(force, pulse_end), [&](double value) { return value >= rebound_n; }))
       hit.fault = TapFault::double_hit;

@@ -16,7 +16,12 @@ struct TapRecording {
   double sample_rate_hz = 0.0;
   std::vector<double> force;                        // N, pressing is positive
   std::array<std::vector<double>, 3> acceleration;  // m/s^2 along x, y, z; empty: not measured
+  // Samples at which force, or any acceleration, stood at the end of its instrument's range, rising; where the
+  // instrument tells.
+  std::vector<std::size_t> force_overloads, response_overloads;
 };
+
+inline constexpr double kEndOfRange = 0.99;  // of full scale: amplifiers bend before they clip
 
 struct TapSettings {
   int force_axis = 0;                                   // x, y, z
@@ -57,7 +62,10 @@ struct TapHit {
 [[nodiscard]] std::size_t record_samples(const TapSettings& settings, double sample_rate_hz);
 [[nodiscard]] std::size_t samples_before(const TapSettings& settings, double sample_rate_hz);
 
-// Throws std::invalid_argument, in words for the operator, for settings out of their range, channels of different
+// Throws std::invalid_argument, in words for the operator, for settings out of their range.
+void require_tap_settings(const TapSettings& settings);
+
+// The same, and for channels of different
 // length, values that are not finite, a channel that is zero throughout, and a force that points the wrong way.
 void require_sound_taps(const TapRecording& recording, const TapSettings& settings);
 

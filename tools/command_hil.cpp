@@ -214,6 +214,7 @@ void hil(const HilOptions& options) {
   check_outputs(options);
   Cell cell = read_cell(options.cell, {.bus = options.live});
   if (options.live) check_can_send(cell);
+  cell.measures = false;
   cell.mode = options.shadow ? RuntimeMode::shadow : RuntimeMode::active;
   const Scenario scenario = read_scenario(options.scenario, cell);
   if (options.compare) return compare(options, cell, scenario);

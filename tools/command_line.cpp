@@ -34,6 +34,7 @@ int run_stillcut(int argc, char** argv) {
   add_simulate_command(app);
   add_stability_command(app);
   add_surface_command(app);
+  add_tap_command(app);
   add_trajectory_command(app);
   add_tune_command(app);
   return run_command_line(app, argc, argv);

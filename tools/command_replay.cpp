@@ -84,7 +84,7 @@ void replay(const ReplayOptions& options) {
   if (!options.publish.empty()) publisher.emplace(open_lcm(options.publish));
   const NominalPrediction prediction = predictor.nominal();
   if (!prediction.warning.empty()) std::cerr << "stillcut: " << prediction.warning << '\n';
-  core.add_lobes(prediction.diagram);
+  if (!cell.measures) core.add_lobes(prediction.diagram);  // as the daemon
 
   std::ofstream events_file;
   const bool events_to_stdout = options.events == "-";

@@ -21,6 +21,7 @@ void add_replay_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
 void add_surface_command(CLI::App& app);
+void add_tap_command(CLI::App& app);
 void add_trajectory_command(CLI::App& app);
 void add_tune_command(CLI::App& app);
 

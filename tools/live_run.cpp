@@ -100,9 +100,10 @@ void add_recording(nlohmann::ordered_json& summary, const RecorderCounters& reco
   summary["record_stops"] = recorded.stops;
 }
 
-const char* mode_name(RuntimeMode mode) {
-  if (mode == RuntimeMode::active) return "active";
-  return mode == RuntimeMode::shadow ? "shadow" : "off";
+const char* mode_name(const Cell& cell) {
+  if (cell.measures) return "measure";
+  if (cell.mode == RuntimeMode::active) return "active";
+  return cell.mode == RuntimeMode::shadow ? "shadow" : "off";
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ struct LiveRun::Parts {
   void stop();
 
   Pipeline pipeline;
-  Predictor predictor;
+  std::optional<Predictor> predictor;  // none while the machine is measured
   std::unique_ptr<CanBus> bus;
   std::unique_ptr<LoopChannels> channels;
   PublisherThread publisher;
@@ -135,15 +136,16 @@ struct LiveRun::Parts {
 LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm,
                       const LiveRunOptions& options)
     : pipeline{cell},
-      predictor{cell},
       channels{std::make_unique<LoopChannels>(records(cell, options))},
       publisher{*channels, lcm, options.events, cell.mode, [this, on_output = options.on_output](const Output& output) {
                   if (recorder) recorder->add_output(output);
                   if (on_output) on_output(output);
                 }} {
-  const NominalPrediction prediction = predictor.nominal();
-  if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
-  pipeline.core().add_lobes(prediction.diagram);
+  if (!cell.measures) {
+    const NominalPrediction prediction = predictor.emplace(cell).nominal();
+    if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
+    pipeline.core().add_lobes(prediction.diagram);
+  }
   const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
   if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
   // After what takes time: no frame waits for it, and where real time is refused no recording is begun.
@@ -151,7 +153,7 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   if (is_plain_log(options.record)) frame_log.emplace(*channels, options.record, interface_name(bus_name));
   if (const RecordingSettings settings = recording_settings(cell, options); !settings.folder.empty())
     recorder = std::make_unique<Recorder>(*channels, settings, interface_name(bus_name));
-  model = std::jthread{[this](const std::stop_token& stop) { run_model(stop); }};
+  if (predictor) model = std::jthread{[this](const std::stop_token& stop) { run_model(stop); }};
   RobotHandlers handlers;
   handlers.on_state = [this](const RobotState& state) {
     (void)channels->messages.push(state);
@@ -177,18 +179,19 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
     loop_ended.store(true, std::memory_order_release);
   });
   if (!loop->report().complete()) spdlog::warn("not fully real-time: {}", loop->report().reasons);
-  spdlog::info("stillcutd runs: {} on {}, mode {}", cell.file.string(), bus_name, mode_name(cell.mode));
+  spdlog::info("stillcutd runs: {} on {}, mode {}", cell.file.string(), bus_name, mode_name(cell));
 }
 
 void LiveRun::Parts::run_model(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (newest_state.update()) {
-      if (const auto diagram = predictor.at(newest_state.value()))
-        channels->lobes.publish({*diagram, recorder ? recorder->add_question(encode(predictor.answered()), false) : 0});
+      if (const auto diagram = predictor->at(newest_state.value()))
+        channels->lobes.publish(
+            {*diagram, recorder ? recorder->add_question(encode(predictor->answered()), false) : 0});
     }
     if (newest_path.update()) {
       const RobotPath& path = newest_path.value();
-      channels->ahead.publish({predictor.along(path), recorder ? recorder->add_question(encode(path), true) : 0});
+      channels->ahead.publish({predictor->along(path), recorder ? recorder->add_question(encode(path), true) : 0});
     }
     std::this_thread::sleep_for(kPollModel);
   }

@@ -133,12 +133,13 @@ SensorPlan plan_sensor(const Dbc& dbc, const AccelerometerSettings& settings, st
   };
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
     if (settings.axis[i].empty()) continue;
-    const std::vector<const DbcSignal*> signals = find(settings.axis[i], kAxisNames[i]);
+    const char* key = settings.axis_keys[i].c_str();
+    const std::vector<const DbcSignal*> signals = find(settings.axis[i], key);
     const int samples = static_cast<int>(signals.size());
     if (sensor.samples != 0 && samples != sensor.samples) {
-      fail({table.file, table.line, table.key + "." + kAxisNames[i]},
-           std::to_string(samples) + " samples a frame, but " + std::to_string(sensor.samples) + " for " + first_key +
-               "; all axes of an accelerometer have the same number");
+      fail({table.file, table.line, table.key + "." + key}, std::to_string(samples) + " samples a frame, but " +
+                                                                std::to_string(sensor.samples) + " for " + first_key +
+                                                                "; all axes of an accelerometer have the same number");
     }
     sensor.samples = samples;
     sensor.axis[i] = plan_axis(signals);
@@ -196,7 +197,7 @@ DecodePlan compile_decode_plan(const Dbc& dbc, const CanSettings& can, const std
   DecodePlan plan;
   for (std::size_t i = 0; i < can.accelerometers.size(); ++i) {
     plan.sensors.push_back(plan_sensor(dbc, can.accelerometers[i], static_cast<std::uint8_t>(i),
-                                       {cell_file, can.accelerometers[i].line, "can.accelerometer"}));
+                                       {cell_file, can.accelerometers[i].line, can.accelerometers[i].table}));
   }
   if (!can.spindle_speed.empty()) {
     plan.spindle = plan_spindle(dbc, can.spindle_speed, {cell_file, can.line, "can.spindle.speed_rpm"});

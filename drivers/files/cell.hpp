@@ -27,11 +27,23 @@ struct DynamicsSettings {
 
 struct AccelerometerSettings {
   double sample_rate_hz = 0.0;
-  std::array<std::string, 3> axis;   // "Message.Signal{a..b}" for x, y, z; empty: not measured
-  std::string counter;               // "Message.Signal"; empty: none
-  double unit_m_per_s2 = 1.0;        // 1 for m/s^2, 9.80665 for g
-  std::array<double, 3> rotation{};  // rad, sensor to tool frame, about x, y, z in turn
-  int line = 0;                      // where the table stands in the cell file, for messages
+  std::array<std::string, 3> axis;          // "Message.Signal{a..b}" for x, y, z; empty: not measured
+  std::string counter;                      // "Message.Signal"; empty: none
+  double unit_m_per_s2 = 1.0;               // 1 for m/s^2, 9.80665 for g
+  std::array<double, 3> rotation{};         // rad, sensor to tool frame, about x, y, z in turn
+  int line = 0;                             // where the table stands in the cell file, for messages
+  double full_scale_m_per_s2 = kInfinity;   // where its range ends; infinite: as the DBC file tells
+  std::string table = "can.accelerometer";  // and the keys of its axes, for messages too
+  std::array<std::string, 3> axis_keys{"x", "y", "z"};
+};
+
+// The impulse hammer of tap tests, sampled together with the accelerometer.
+struct HammerSettings {
+  double sample_rate_hz = 0.0;
+  std::string force;                // "Message.Signal{a..b}", N
+  std::string counter;              // "Message.Signal"; empty: none
+  double full_scale_n = kInfinity;  // where its range ends; infinite: as the DBC file tells
+  int line = 0;
 };
 
 struct CanSettings {
@@ -40,6 +52,7 @@ struct CanSettings {
   std::vector<AccelerometerSettings> accelerometers;
   std::string spindle_speed;  // "Message.Signal"; empty: none
   int line = 0;
+  std::optional<HammerSettings> hammer;  // tap tests ask for it (stillcut tap), the daemon does not
 };
 
 // How readily chatter is called. What is left out is as the monitor's own defaults have it (dsp/monitor.hpp), so that
@@ -77,6 +90,7 @@ struct Cell {
   std::optional<CanSettings> can;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   RuntimeMode mode = RuntimeMode::shadow;
+  bool measures = false;  // [runtime] mode = "measure": mode is off, and no map is asked for
   DetectionSettings detection;
   CompensationSettings compensation;
   RecordingSettings recording;

@@ -66,6 +66,7 @@ AccelerometerSettings read_accelerometer(TomlSection section) {
   sensor.counter = read_signal(section, "counter", "", false);
   sensor.unit_m_per_s2 = section.choice<double>("unit", {{"m/s^2", 1.0}, {"g", kStandardGravity}});
   const std::vector<double> rotation = section.numbers("rotation_deg", from(-360, 360));
+  sensor.full_scale_m_per_s2 = section.number("full_scale_m_per_s2", above(0), kInfinity);
   section.finish();
   if (!any_axis) section.fail("x", "is missing, and so are y and z; give at least one axis");
   if (section.has("rotation_deg")) {
@@ -73,6 +74,17 @@ AccelerometerSettings read_accelerometer(TomlSection section) {
     for (std::size_t i = 0; i < 3; ++i) sensor.rotation[i] = deg_to_rad(rotation[i]);
   }
   return sensor;
+}
+
+HammerSettings read_hammer(TomlSection section) {
+  HammerSettings hammer;
+  hammer.line = section.line();
+  hammer.sample_rate_hz = section.number("sample_rate_hz", above(0, 1e6));
+  hammer.force = read_signal(section, "force_n", std::nullopt, true);
+  hammer.counter = read_signal(section, "counter", "", false);
+  hammer.full_scale_n = section.number("full_scale_n", above(0), kInfinity);
+  section.finish();
+  return hammer;
 }
 
 std::string read_bus(TomlSection& section, const std::filesystem::path& folder, bool needed) {
@@ -156,6 +168,7 @@ CanSettings read_can(TomlSection section, const std::filesystem::path& folder, c
     can.spindle_speed = read_signal(*spindle, "speed_rpm", std::nullopt, false);
     spindle->finish();
   }
+  if (auto hammer = section.table("hammer")) can.hammer = read_hammer(std::move(*hammer));
   section.finish();
   if (can.accelerometers.size() > kMaxSensors) {
     section.fail("accelerometer", "there are " + std::to_string(can.accelerometers.size()) +
@@ -176,12 +189,15 @@ std::string read_lcm_url(TomlSection section, const std::string& fallback) {
   return url;
 }
 
-RuntimeMode read_runtime_mode(TomlSection section) {
-  const RuntimeMode mode = section.choice<RuntimeMode>(
-      "mode", {{"off", RuntimeMode::off}, {"shadow", RuntimeMode::shadow}, {"active", RuntimeMode::active}},
-      RuntimeMode::shadow);
+CellRuntime read_runtime(TomlSection section) {
+  const CellRuntime runtime = section.choice<CellRuntime>("mode",
+                                                          {{"off", {RuntimeMode::off, false}},
+                                                           {"measure", {RuntimeMode::off, true}},
+                                                           {"shadow", {RuntimeMode::shadow, false}},
+                                                           {"active", {RuntimeMode::active, false}}},
+                                                          CellRuntime{RuntimeMode::shadow, false});
   section.finish();
-  return mode;
+  return runtime;
 }
 
 DetectionSettings read_detection(TomlSection section) {

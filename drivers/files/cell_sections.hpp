@@ -20,7 +20,11 @@ SpindleLimits read_spindle(TomlSection section);
 DynamicsSettings read_dynamics(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs);
 CanSettings read_can(TomlSection section, const std::filesystem::path& folder, const CellNeeds& needs);
 std::string read_lcm_url(TomlSection section, const std::string& fallback);
-RuntimeMode read_runtime_mode(TomlSection section);
+struct CellRuntime {
+  RuntimeMode mode = RuntimeMode::shadow;
+  bool measures = false;
+};
+CellRuntime read_runtime(TomlSection section);
 DetectionSettings read_detection(TomlSection section);
 
 // A file's name from the folder, and the error where a key names none (cell_devices.cpp).

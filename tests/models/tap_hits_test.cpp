@@ -74,6 +74,11 @@ TEST(TapHits, AreSoundAgainOnceTheRecordBeforeIsOver) {
 
 TEST(TapHits, BeyondTheRangeOfHammerOrSensorAreRefused) {
   const TapRecording recording = hit_at({{0.5, 500, 0.004}, {2.5, 300, 0.004}}, 4.0);
+  TapRecording told = recording;
+  told.response_overloads = {find_hits(recording, {})[1].at + 1};
+  EXPECT_EQ(faults(told, {}), (std::vector{TapFault::none, TapFault::response_overload}));
+  told.force_overloads = {find_hits(recording, {})[0].at};
+  EXPECT_EQ(faults(told, {}), (std::vector{TapFault::force_overload, TapFault::response_overload}));
   EXPECT_EQ(faults(recording, {.force_full_scale_n = 500}), (std::vector{TapFault::force_overload, TapFault::none}));
   double loudest = 0.0;
   for (const double value : recording.acceleration[1]) loudest = std::max(loudest, std::abs(value));

@@ -32,8 +32,10 @@ struct Finished {
 // A program that runs, its output going to files in `folder`, which is its working folder too.
 class Running {
  public:
-  // arguments[0] is "stillcut" or "stillcutd".
-  Running(const std::vector<std::string>& arguments, std::filesystem::path folder) : folder_{std::move(folder)} {
+  // arguments[0] is "stillcut" or "stillcutd"; `input`, where it is named, is what stands on its standard input.
+  Running(const std::vector<std::string>& arguments, std::filesystem::path folder,
+          const std::filesystem::path& input = {})
+      : folder_{std::move(folder)} {
     const std::string program = std::string(STILLCUT_PROGRAMS "/") + arguments.at(0);
     std::vector<char*> argv;
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -44,8 +46,9 @@ class Running {
     if (pid_ > 0) return;
     const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const bool ready =
-        chdir(folder_.c_str()) == 0 && dup2(out_file, STDOUT_FILENO) >= 0 && dup2(err_file, STDERR_FILENO) >= 0;
+    const bool heard = input.empty() || dup2(open(input.c_str(), O_RDONLY), STDIN_FILENO) >= 0;
+    const bool ready = heard && chdir(folder_.c_str()) == 0 && dup2(out_file, STDOUT_FILENO) >= 0 &&
+                       dup2(err_file, STDERR_FILENO) >= 0;
     if (ready) execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -72,8 +75,9 @@ class Running {
   pid_t pid_ = -1;
 };
 
-inline Finished run(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-  return Running{arguments, folder}.wait();
+inline Finished run(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                    const std::filesystem::path& input = {}) {
+  return Running{arguments, folder, input}.wait();
 }
 
 // A folder with a copy of the demo cell, to be changed.

@@ -124,7 +124,7 @@ const std::vector<Mistake> kMistakes{
     {"socketcan:can0", "socketcan:a-name-with-16-ch", "bus", "can.bus", "at most 15 letters"},
     {"socketcan:can0", "local:a/b", "bus", "can.bus", "is no bus"},
     {"udpm://239", "udp://239", "url", "lcm.url", "is no LCM address"},
-    {"mode = \"shadow\"", "mode = \"on\"", "mode = ", "runtime.mode", "give one of \"off, shadow, active\""},
+    {"mode = \"shadow\"", "mode = \"on\"", "mode = ", "runtime.mode", "give one of \"off, measure, shadow, active\""},
     {kModeLine, with_monitor("limit = 3.9"), "limit", "monitor.limit",
      "3.9 is out of range; give a number from 4 to 400"},
     {kModeLine, with_monitor("limit = 401"), "limit", "monitor.limit", "401 is out of range"},

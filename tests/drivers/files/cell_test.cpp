@@ -1,5 +1,6 @@
 #include "drivers/files/cell.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -200,6 +201,42 @@ mode = "active"
   EXPECT_EQ(cell.can->spindle_speed, "");
   EXPECT_EQ(cell.lcm_url, "memq://");
   EXPECT_EQ(cell.mode, RuntimeMode::active);
+}
+
+TEST(Cell, ReadsTheHammerAndTheEndsOfRanges) {
+  EXPECT_FALSE(read(kExampleCell).can->hammer.has_value());
+  const std::string text = replaced(kExampleCell, "[can.spindle]",
+                                    "full_scale_m_per_s2 = 490\n[can.hammer]\nsample_rate_hz = 25600\n"
+                                    "force_n = \"Hammer.Force{0..9}\"\ncounter = \"Hammer.Counter\"\n[can.spindle]");
+  const Cell cell = read(text);
+  ASSERT_TRUE(cell.can->hammer.has_value());
+  EXPECT_EQ(cell.can->hammer->force, "Hammer.Force{0..9}");
+  EXPECT_EQ(cell.can->hammer->counter, "Hammer.Counter");
+  EXPECT_EQ(cell.can->hammer->sample_rate_hz, 25600.0);
+  EXPECT_EQ(cell.can->hammer->full_scale_n, kInfinity);
+  EXPECT_EQ(cell.can->hammer->line, line_of(text, "[can.hammer]"));
+  EXPECT_EQ(cell.can->accelerometers[0].full_scale_m_per_s2, 490.0);
+  const auto message = [&](const std::string& from, const std::string& to) {
+    return message_of<InputError>([&] { (void)read(replaced(text, from, to)); });
+  };
+  EXPECT_THAT(message("force_n = \"Hammer.Force{0..9}\"", ""), testing::HasSubstr("can.hammer.force_n: is missing"));
+  EXPECT_THAT(message("force_n = ", "full_scale_n = -1\nforce_n = "),
+              testing::HasSubstr("can.hammer.full_scale_n: -1"));
+  EXPECT_THAT(message("Hammer.Force{0..9}", "Force"), testing::HasSubstr("\"Force\" names no signal"));
+}
+
+// A cell that is measured has no map yet, and corrects nothing.
+TEST(Cell, ThatMeasuresIsOffAndNeedsNoMap) {
+  const TempFolder folder;
+  const std::string text = replaced(kExampleCell, "\"map\"", "\"absent-map\"");
+  const auto with_mode = [&](const std::string& mode) {
+    return write_example_cell(folder, replaced(text, "mode = \"shadow\"", "mode = \"" + mode + "\""));
+  };
+  const Cell cell = read_cell(with_mode("measure"), {.dbc = false, .bus = false});
+  EXPECT_TRUE(cell.measures);
+  EXPECT_EQ(cell.mode, RuntimeMode::off);
+  EXPECT_THROW(read_cell(with_mode("off"), {.dbc = false, .bus = false}), InputError);
+  EXPECT_FALSE(read(kExampleCell).measures);
 }
 
 TEST(Cell, GivesEqualPitchWhereNoneIsNamed) {
