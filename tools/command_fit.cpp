@@ -64,6 +64,8 @@ FitQuestion question_of(const FitOptions& options) {
     if (!poles.empty()) throw CLI::ValidationError("--poles", "\"" + text + "\": given twice");
     poles = frequencies_of("--poles", at == std::string::npos ? text : text.substr(at + 1), ',');
     std::sort(poles.begin(), poles.end());
+    if (std::adjacent_find(poles.begin(), poles.end()) != poles.end())
+      throw CLI::ValidationError("--poles", "\"" + text + "\": a frequency stands twice");
   }
   return question;
 }

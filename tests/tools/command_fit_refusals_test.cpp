@@ -51,6 +51,7 @@ TEST(FitCommand, RefusesInOneLineAndLeavesTheMapThatIsThere) {
       {{"--out", "map"}, 2, "FRF"},
       {{"1.csv", "--out", "map", "--poles", "30,fast"}, 2, "\"fast\" is no frequency in Hz"},
       {{"1.csv", "--out", "map", "--poles", "30", "--poles", "31"}, 2, "given twice"},
+      {{"1.csv", "--out", "map", "--poles", "30,60,30"}, 2, "a frequency stands twice"},
       {{"1.csv", "--out", "map", "--band", "80"}, 2, "must be MIN:MAX in Hz"},
       {{"1.csv", "--out", "map", "--band", "80:20"}, 2, "must be MIN:MAX in Hz"},
       {{"1.csv", "--out", "map", "--method", "best"}, 2, "best"},
