@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "drivers/files/input_error.hpp"
 #include "tools/commands.hpp"
 #include "tools/fit_output.hpp"
 #include "tools/fit_study.hpp"
