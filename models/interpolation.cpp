@@ -19,15 +19,15 @@ Mode normalised(Mode mode) {
   return mode;
 }
 
-// Puts the modes of `posture` on the tracks as seen from `parent`, whose modes are on them already.
-void extend_tracks(std::vector<ModeTrack>& tracks, std::size_t parent, std::size_t posture,
+// Puts the modes of `posture` on the tracks, each as the nearest posture has it that is on it already.
+void extend_tracks(std::vector<ModeTrack>& tracks, std::span<const double> distances, std::size_t posture,
                    std::span<const Mode> modes) {
   std::vector<Mode> known;
-  std::vector<std::size_t> track_of;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    if (!tracks[t][parent]) continue;
-    known.push_back(*tracks[t][parent]);
-    track_of.push_back(t);
+  for (const ModeTrack& track : tracks) {
+    std::size_t nearest = track.size();
+    for (std::size_t i = 0; i < track.size(); ++i)
+      if (track[i] && (nearest == track.size() || distances[i] < distances[nearest])) nearest = i;
+    known.push_back(*track[nearest]);
   }
   const auto pairs = pair_modes(modes, known);
   for (std::size_t m = 0; m < modes.size(); ++m) {
@@ -37,8 +37,8 @@ void extend_tracks(std::vector<ModeTrack>& tracks, std::size_t parent, std::size
       tracks.back()[posture] = mode;
       continue;
     }
-    const std::size_t t = track_of[*pairs[m]];
-    if (direction_cosine(*tracks[t][parent], mode) < 0.0) {
+    const std::size_t t = *pairs[m];
+    if (direction_cosine(known[t], mode) < 0.0) {
       for (double& component : mode.direction) component = -component;
     }
     tracks[t][posture] = mode;
@@ -146,9 +146,8 @@ std::vector<ModeTrack> match_modes(const DynamicsMap& map, const JointScale& sca
     tracks.emplace_back(count);
     tracks.back().front() = normalised(mode);
   }
-  // Prim's shortest tree: take the posture nearest to those already taken, and compare it with that nearest one.
+  // Prim's shortest tree: always the posture nearest to those already taken.
   std::vector<bool> taken(count, false);
-  std::vector<std::size_t> parent(count, 0);
   std::vector<double> distance(count, kInfinity);
   for (std::size_t latest = 0, step = 1;; ++step) {
     taken[latest] = true;
@@ -157,10 +156,13 @@ std::vector<ModeTrack> match_modes(const DynamicsMap& map, const JointScale& sca
     for (std::size_t i = 0; i < count; ++i) {
       if (taken[i]) continue;
       const double to_latest = posture_distance(map.postures[i], map.postures[latest], map.has_joints, scale);
-      if (to_latest < distance[i]) distance[i] = to_latest, parent[i] = latest;
+      distance[i] = std::min(distance[i], to_latest);
       if (next == count || distance[i] < distance[next]) next = i;
     }
-    extend_tracks(tracks, parent[next], next, map.postures[next].modes);
+    std::vector<double> away;
+    for (const Posture& posture : map.postures)
+      away.push_back(posture_distance(map.postures[next], posture, map.has_joints, scale));
+    extend_tracks(tracks, away, next, map.postures[next].modes);
     latest = next;
   }
 }

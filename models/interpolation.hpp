@@ -38,10 +38,10 @@ struct PredictedPosture {
 // where a posture lacks it.
 using ModeTrack = std::vector<std::optional<Mode>>;
 
-// Tells which modes of different postures are the same physical mode. Each posture is compared with its nearest
-// neighbour along the shortest tree through the map, so that modes change little in each comparison; pairs are taken
-// best first, by difference in log frequency and in direction. Where all postures have the same number of modes, so
-// many tracks result.
+// Tells which modes of different postures are the same physical mode. Postures are taken in the order of the shortest
+// tree through the map, so that modes change little from one to the next; each mode is compared with every track at the
+// nearest posture that has it, pairs taken best first, by difference in log frequency and in direction. Where all
+// postures have the same number of modes, so many tracks result.
 std::vector<ModeTrack> match_modes(const DynamicsMap& map, const JointScale& scale = kEqualJoints);
 
 // Throws std::invalid_argument, naming the posture, for a mode that is not physical (check_modes).

@@ -147,6 +147,7 @@ MapMethod best_of(const LeaveOneOut& report) {
   constexpr double kClearlyBetter = 0.95, kNothing = 1e-3;
   MapMethod best = MapMethod::modal;
   for (const MapMethod method : {MapMethod::trend, MapMethod::frf}) {
+    if (std::find(report.methods.begin(), report.methods.end(), method) == report.methods.end()) continue;
     if (report.of(method).score < kClearlyBetter * report.of(best).score - kNothing) best = method;
   }
   return best;
@@ -160,7 +161,7 @@ const char* name_of(MapMethod method) {
 }
 
 LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpolation,
-                          const std::function<void(double)>& progress) {
+                          const std::function<void(double)>& progress, bool with_frf) {
   if (map.postures.size() < 2) {
     throw std::invalid_argument("dynamics map: leaving one out needs two postures at least; it holds " +
                                 std::to_string(map.postures.size()));
@@ -168,6 +169,8 @@ LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpola
   check_map(map);
   LeaveOneOut report;
   report.in_joints = map.has_joints;
+  for (const MapMethod method : kMapMethods)
+    if (with_frf || method != MapMethod::frf) report.methods.push_back(method);
   for (std::size_t left = 0; left < map.postures.size(); ++left) {
     if (progress) progress(static_cast<double>(left) / static_cast<double>(map.postures.size()));
     const DynamicsMap others = without(map, left);
@@ -183,12 +186,12 @@ LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpola
     posture.nearest = superposed.nearest;
     posture.nearest_distance = superposed.nearest_distance;
     posture.outside = superposed.outside;
-    for (const MapMethod method : kMapMethods) {
+    for (const MapMethod method : report.methods) {
       posture.by_method[static_cast<std::size_t>(method)] =
           compare(measured, peaks, predicted_modes(others, measured, method, interpolation), method);
     }
   }
-  for (const MapMethod method : kMapMethods)
+  for (const MapMethod method : report.methods)
     report.total[static_cast<std::size_t>(method)] = summed(report.postures, method);
   report.best = best_of(report);
   report.beats_mean = report.of(report.best).score < report.of(MapMethod::mean).score;

@@ -65,7 +65,8 @@ struct MethodErrors {
 };
 
 struct LeaveOneOut {
-  bool in_joints = false;  // distances in rad; otherwise m
+  bool in_joints = false;          // distances in rad; otherwise m
+  std::vector<MapMethod> methods;  // those that were tried, in the order of kMapMethods; the others have no figures
   std::vector<LeftOutPosture> postures;
   std::array<MethodErrors, kMapMethods.size()> total;
   MapMethod best =
@@ -78,10 +79,11 @@ struct LeaveOneOut {
 // For `frf` the superposed modes are first fitted with as many as were measured (models/modal_refit), as one identifies
 // modes in a predicted response; peaks are counted in the superposed response itself. Postures may have different
 // numbers of modes; a posture for which a way finds none counts all its modes as missing. `power` and `joint_scale` of
-// `interpolation` hold, its kind does not matter. `progress` is told the share done, 0 to 1. Throws
-// std::invalid_argument for a map of fewer than two postures, and as predict_posture does.
+// `interpolation` hold, its kind does not matter. `progress` is told the share done, 0 to 1. `with_frf` false leaves
+// that way out, whose fits cost a second a posture in a map of 49. Throws std::invalid_argument for a map of fewer than
+// two postures, and as predict_posture does.
 LeaveOneOut leave_one_out(const DynamicsMap& map, const Interpolation& interpolation = {},
-                          const std::function<void(double)>& progress = {});
+                          const std::function<void(double)>& progress = {}, bool with_frf = true);
 
 // How far the map's own way (all of `interpolation` holds) is off at postures that were left out: root mean square of
 // the relative errors over all modes, for bands of confidence. Nothing where the map is too small to tell. Throws as

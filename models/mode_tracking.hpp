@@ -15,7 +15,7 @@ double modal_assurance(const Mode& a, const Mode& b);
 struct TrackingSettings {
   bool places_known = true;  // false: postures count as near where their modes are alike
   JointScale scale = kEqualJoints;
-  double most_difference = 0.7;  // beyond it two modes are not the same: octaves + 1 - MAC
+  double most_difference = 0.9;  // beyond it two modes are not the same: octaves + 1 - MAC
 };
 
 struct ModeTracks {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "drivers/files/input_error.hpp"
 #include "tools/commands.hpp"
 #include "tools/fit_output.hpp"
 #include "tools/fit_study.hpp"
@@ -64,6 +65,8 @@ FitQuestion question_of(const FitOptions& options) {
     if (!poles.empty()) throw CLI::ValidationError("--poles", "\"" + text + "\": given twice");
     poles = frequencies_of("--poles", at == std::string::npos ? text : text.substr(at + 1), ',');
     std::sort(poles.begin(), poles.end());
+    if (std::adjacent_find(poles.begin(), poles.end()) != poles.end())
+      throw CLI::ValidationError("--poles", "\"" + text + "\": a frequency stands twice");
   }
   return question;
 }
@@ -87,6 +90,12 @@ void run_fit(const FitOptions& options) {
   Progress progress("fitting");
   const FitStudy study = fit_map(question, [&](double share) { progress.update(share); });
   progress.finish();
+  std::error_code none;
+  if (!study.without_responses.empty() &&
+      std::filesystem::equivalent(options.postures, std::filesystem::path(options.out) / "postures.csv", none))
+    throw InputError(options.postures, 0,
+                     "would lose posture " + study.without_responses.front() +
+                         ", which no file of responses is of; write the map to another folder");
   write_fitted_map(study, options.out);
   if (!options.plots.empty()) draw(study, options.plots);
   if (options.json)

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string formatted(const char* format, auto... values) {
+std::string text_of_format(const char* format, auto... values) {
   std::array<char, 200> text{};
   std::snprintf(text.data(), text.size(), format, values...);
   return text.data();
@@ -48,16 +48,16 @@ void print_posture(const FitStudy& study, std::size_t p, std::ostream& out) {
   const FittedPosture& posture = study.postures[p];
   const ResponseChecks& checks = posture.fit.checks;
   out << "posture " << study.map.postures[p].id << " (" << posture.file << "): fit off by "
-      << formatted("%.2g %%", 100.0 * posture.fit.misfit);
+      << text_of_format("%.2g %%", 100.0 * posture.fit.misfit);
   if (std::isfinite(checks.reciprocity_error))
-    out << formatted(", reciprocity by %.2g %%", 100.0 * checks.reciprocity_error);
+    out << text_of_format(", reciprocity by %.2g %%", 100.0 * checks.reciprocity_error);
   if (std::isfinite(checks.passivity_excess))
-    out << formatted(", %.2g %% of the power given, not taken", 100.0 * checks.passivity_excess);
+    out << text_of_format(", %.2g %% of the power given, not taken", 100.0 * checks.passivity_excess);
   out << "\n  mode         frequency               damping                stiffness            direction\n";
   for (std::size_t m = 0; m < posture.fit.modes.size(); ++m) {
     const auto& [mode, deviation] = posture.fit.modes[m];
     const auto& [x, y, z] = mode.direction;
-    out << formatted(
+    out << text_of_format(
         "  %4d %9.3f +- %-8.2g Hz %7.3f +- %-8.2g %% %9.4g +- %-8.2g N/um  % .3f % .3f % .3f +- %.2g deg\n",
         study.tracks.number[p][m], mode.natural_frequency / kTwoPi, deviation.natural_frequency / kTwoPi,
         100.0 * mode.damping_ratio, 100.0 * deviation.damping_ratio, 1e-6 * mode.stiffness, 1e-6 * deviation.stiffness,
@@ -91,8 +91,8 @@ void print_tracks(const FitStudy& study, std::ostream& out) {
   out << "\nmodes over the postures:\n";
   for (int track = 1; track <= study.tracks.count; ++track) {
     const TrackRange range = range_of(study, track);
-    out << formatted("  %4d %9.3f to %.3f Hz, at %d of %zu postures", track, range.lowest_hz, range.highest_hz,
-                     range.found, count);
+    out << text_of_format("  %4d %9.3f to %.3f Hz, at %d of %zu postures", track, range.lowest_hz, range.highest_hz,
+                          range.found, count);
     if (range.found < static_cast<int>(count)) {
       const char* before = "; missing at ";
       for (std::size_t p = 0; p < count; ++p) {
@@ -185,7 +185,8 @@ void print_fit(const FitStudy& study, std::ostream& out) {
   const NextTap& next = *study.next_tap;
   out << "\nA next tap test would help most at " << place_text(next, study.map.has_joints) << ": "
       << posture_distance_text(next.nearest_distance, study.map.has_joints) << " from the nearest, " << next.nearest
-      << formatted("; the map is expected to be off there by %.2g half-widths of a resonance.\n", next.half_widths);
+      << text_of_format("; the map is expected to be off there by %.2g half-widths of a resonance.\n",
+                        next.half_widths);
 }
 
 Json fit_to_json(const FitStudy& study) {

@@ -19,6 +19,9 @@ namespace {
 // A milling machine's tool point gives way by no more and no less than this, N/m; outside, units are likely wrong.
 constexpr double kSoftest = 1e4, kStiffest = 1e11;
 
+// From more of them `frf` takes longer to judge than all modes to find; `stillcut map` tells of it.
+constexpr std::size_t kFewPostures = 12;
+
 std::string id_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
 // The files in the order of the map's postures, and the map without modes; what was left out goes to `doubts`.
@@ -46,7 +49,8 @@ std::vector<std::string> put_in_order(const FitQuestion& question, FitStudy& stu
   }
   const DynamicsMap all = read_postures(question.postures);
   study.map.has_joints = all.has_joints;
-  std::vector<std::string> ordered, without;
+  std::vector<std::string> ordered;
+  std::vector<std::string>& without = study.without_responses;
   for (const Posture& posture : all.postures) {
     const auto file = file_of(posture.id);
     if (file == files.end()) {
@@ -138,7 +142,7 @@ FitStudy fit_map(const FitQuestion& question, const std::function<void(double)>&
     for (const IdentifiedMode& mode : study.postures[i].fit.modes) study.map.postures[i].modes.push_back(mode.mode);
   study.tracks = track_modes(study.map, {.places_known = study.places_known});
   if (study.places_known && files.size() > 1) {
-    study.left_out = leave_one_out(study.map);
+    study.left_out = leave_one_out(study.map, {}, {}, files.size() <= kFewPostures);
     study.next_tap = next_tap(study.map, *study.left_out);
     compare_matching(study);
   }

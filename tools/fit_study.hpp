@@ -30,9 +30,10 @@ struct FittedPosture {
 };
 
 struct FitStudy {
-  DynamicsMap map;                      // in the order of the postures file, without one in that of the files
-  bool places_known = true;             // a single posture without a place stands at 0, 0, 0
-  std::vector<FittedPosture> postures;  // one each
+  DynamicsMap map;                             // in the order of the postures file, without one in that of the files
+  bool places_known = true;                    // a single posture without a place stands at 0, 0, 0
+  std::vector<FittedPosture> postures;         // one each
+  std::vector<std::string> without_responses;  // postures of the postures file that no file is of; left out
   ModeTracks tracks;
   std::optional<LeaveOneOut> left_out;  // where there are two postures at least, and their places are known
   std::optional<NextTap> next_tap;

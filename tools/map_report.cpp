@@ -104,8 +104,7 @@ std::string cells(double frequency, double peak, const std::string& count) {
 std::string advice(const LeaveOneOut& report) {
   const MethodErrors &best = report.of(report.best), &mean = report.of(MapMethod::mean);
   std::string text = std::string("Use interpolation = \"") + name_of(report.best) +
-                     "\": by the errors above it is the best of the three for this map (frequency " +
-                     percent(best.frequency.rms) +
+                     "\": by the errors above it is the best for this map (frequency " + percent(best.frequency.rms) +
                      " rms; the mean of the other postures: " + percent(mean.frequency.rms) + ").";
   if (!report.beats_mean) {
     text +=
@@ -128,7 +127,7 @@ void print_report(const LeaveOneOut& report, std::ostream& out) {
     id_width = std::max({id_width, posture.id.size() + 1, posture.nearest.size() + 1});
   out << left("posture", id_width) << left("nearest", id_width) << right("away", 9) << right("mode 1", 11)
       << right("peak", 12);
-  for (const MapMethod method : kMapMethods) out << "  | " << left(name_of(method), kWidth - 2);
+  for (const MapMethod method : report.methods) out << "  | " << left(name_of(method), kWidth - 2);
   out << '\n';
   for (const LeftOutPosture& posture : report.postures) {
     const LeftOutPrediction& any = posture.by(MapMethod::mean);
@@ -136,7 +135,7 @@ void print_report(const LeaveOneOut& report, std::ostream& out) {
         << right(posture_distance_text(posture.nearest_distance, report.in_joints), 9) << (posture.outside ? "*" : " ")
         << right(with_decimals(any.modes.front().measured.natural_frequency / kTwoPi, 2) + " Hz", 10)
         << right(with_decimals(any.measured_peak * 1e6, 3) + " um/N", 12);
-    for (const MapMethod method : kMapMethods) {
+    for (const MapMethod method : report.methods) {
       const LeftOutPrediction& by = posture.by(method);
       const std::string count = std::to_string(by.spurious_peaks) + (lacks_a_mode(by) ? "-" : " ");
       out << cells(worst_frequency(by), by.peak_error, count);
@@ -145,7 +144,7 @@ void print_report(const LeaveOneOut& report, std::ostream& out) {
   }
   const auto line = [&](const char* name, double WorstAndRms::*part, bool sums) {
     out << left(name, 2 * id_width + 32);
-    for (const MapMethod method : kMapMethods) {
+    for (const MapMethod method : report.methods) {
       const MethodErrors& total = report.of(method);
       out << cells(total.frequency.*part, total.peak.*part, sums ? std::to_string(total.spurious_peaks) + " " : "");
     }
@@ -170,7 +169,7 @@ void write_report_csv(const LeaveOneOut& report, std::ostream& out) {
          "outside_map\n";
   for (const LeftOutPosture& posture : report.postures) {
     const std::string distance = csv_number(per_measure(posture.nearest_distance, report.in_joints));
-    for (const MapMethod method : kMapMethods) {
+    for (const MapMethod method : report.methods) {
       const LeftOutPrediction& by = posture.by(method);
       for (std::size_t i = 0; i < by.modes.size(); ++i) {
         const ModePrediction& mode = by.modes[i];
@@ -209,10 +208,10 @@ Json report_to_json(const LeaveOneOut& report) {
     put_distance(one, "nearest_distance", posture.nearest_distance, report.in_joints);
     one["outside_map"] = posture.outside;
     one["measured_peak_m_per_n"] = posture.by(MapMethod::mean).measured_peak;
-    for (const MapMethod method : kMapMethods) one[name_of(method)] = to_json(posture.by(method));
+    for (const MapMethod method : report.methods) one[name_of(method)] = to_json(posture.by(method));
     postures.push_back(std::move(one));
   }
-  for (const MapMethod method : kMapMethods) summary[name_of(method)] = to_json(report.of(method));
+  for (const MapMethod method : report.methods) summary[name_of(method)] = to_json(report.of(method));
   return {{"recommended", name_of(report.best)},
           {"beats_mean", report.beats_mean},
           {"advice", advice(report)},

@@ -55,6 +55,7 @@ plot::Figure report_figure(const LeaveOneOut& report) {
     add_bar(peak_bars, static_cast<double>(i + 1), any.measured_peak * 1e6);
   }
   for (const Style& style : kStyles) {
+    if (std::find(report.methods.begin(), report.methods.end(), style.method) == report.methods.end()) continue;
     plot::Scatter frequencies = scatter(style), peaks = scatter(style);
     for (std::size_t i = 0; i < count; ++i) {
       const LeftOutPrediction& by = report.postures[i].by(style.method);

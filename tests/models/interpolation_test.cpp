@@ -141,6 +141,21 @@ TEST(Interpolation, FrfIsTheWeightedSumOfTheReceptances) {
   }
 }
 
+TEST(Interpolation, AModeMissedInBetweenIsTheSameBehindIt) {
+  DynamicsMap map;
+  for (int i = 0; i < 7; ++i) {
+    Posture posture;
+    posture.id = std::to_string(i);
+    posture.position[0] = 0.1 * i;
+    posture.modes = {{100.0 + i, 0.03, 1e6, {1, 0, 0}}, {300.0 - i, 0.03, 1e6, {0, 1, 0}}};
+    if (i == 3) posture.modes.pop_back();
+    map.postures.push_back(posture);
+  }
+  const auto tracks = match_modes(map);
+  ASSERT_EQ(tracks.size(), 2U);
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(tracks[1][i].has_value(), i != 3);
+}
+
 TEST(Interpolation, AModeThatSomePosturesLackIsPredictedWhereMostOfTheWeightHasIt) {
   std::mt19937_64 random(6);
   DynamicsMap map = random_map(random, 2);

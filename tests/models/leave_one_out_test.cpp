@@ -117,6 +117,16 @@ TEST(LeaveOneOut, TellsItsProgress) {
   EXPECT_EQ(last, 0.75);
 }
 
+TEST(LeaveOneOut, WithoutTheWeightedResponsesTellsTheSameOfTheOthers) {
+  const DynamicsMap map = row(6);
+  const LeaveOneOut all = leave_one_out(map), some = leave_one_out(map, {}, {}, false);
+  EXPECT_EQ(some.methods, (std::vector<MapMethod>{MapMethod::mean, MapMethod::modal, MapMethod::trend}));
+  EXPECT_EQ(all.methods.size(), kMapMethods.size());
+  for (const MapMethod method : some.methods) EXPECT_EQ(some.of(method).score, all.of(method).score) << name_of(method);
+  EXPECT_EQ(some.best, all.best);
+  EXPECT_TRUE(some.postures[0].by(MapMethod::frf).modes.empty());
+}
+
 TEST(LeftOutScatter, IsTheRootMeanSquareOfWhatTheReportSays) {
   std::mt19937_64 random(4);
   DynamicsMap map = row(7);

@@ -50,7 +50,7 @@ TEST(NextTap, IsInTheGapOfAnEvenMap) {
   EXPECT_GT(next->nearest_distance, 0.3);
 }
 
-TEST(NextTap, MendsTheMapMoreThanAPlaceTakenAtRandom) {
+TEST(NextTap, IsWhereTheMapIsFartherOffThanAtRandom) {
   double by_choice = 0.0, at_random = 0.0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     std::mt19937_64 random(seed);
@@ -66,7 +66,7 @@ TEST(NextTap, MendsTheMapMoreThanAPlaceTakenAtRandom) {
       at_random += error_at(map, modes, any, InterpolationKind::modal) / 20.0;
     }
   }
-  EXPECT_GT(by_choice, 1.2 * at_random);
+  EXPECT_GT(by_choice, 1.5 * at_random);
 }
 
 TEST(NextTap, OfJointsIsHalfWayTheShorterWayRound) {

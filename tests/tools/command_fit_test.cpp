@@ -8,39 +8,16 @@
 
 #include "drivers/files/csv.hpp"
 #include "drivers/files/dynamics_map_file.hpp"
+#include "drivers/files/input_error.hpp"
 #include "tests/tools/frf_folder.hpp"
 
 namespace stillcut {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-const std::vector<std::string> kFiles{"1.csv", "2.csv", "3.csv", "4.csv", "5.csv"};
-
-// Five postures in a row, 100 mm apart, with noise.
-class Row : public FrfFolder {
- public:
-  Row() {
-    std::string postures = "posture,x_mm,y_mm,z_mm\n";
-    for (std::size_t i = 0; i < kFiles.size(); ++i) {
-      write_csv(kFiles[i], crossing_modes(place(i)), {.seed = static_cast<unsigned>(i + 1)});
-      postures += std::to_string(i + 1) + "," + std::to_string(100 * i) + ",0,0\n";
-    }
-    (void)write("postures.csv", postures);
-  }
-  static double place(std::size_t i) { return 0.25 * static_cast<double>(i); }
-
-  [[nodiscard]] Finished fit_all(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = kFiles;
-    for (const char* word : {"--out", "map", "--postures", "postures.csv"}) arguments.emplace_back(word);
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return fit(arguments);
-  }
-};
 
 TEST(FitCommand, FindsTheModesAndNumbersThemAlikeAtEveryPosture) {
-  const Row row;
+  const FrfRow row;
   const Finished done = row.fit_all();
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.err, "");
@@ -52,7 +29,7 @@ TEST(FitCommand, FindsTheModesAndNumbersThemAlikeAtEveryPosture) {
   ASSERT_EQ(modes.rows().size(), 15U);
   for (const CsvRow& mode : modes.rows()) {
     const auto number = [&](const char* name) { return modes.number(mode, modes.require_column(name)); };
-    const double at = Row::place(static_cast<std::size_t>(number("posture")) - 1);
+    const double at = FrfRow::place(static_cast<std::size_t>(number("posture")) - 1);
     // Mean frequencies: 35 Hz and 35.5 Hz, then 140 Hz.
     const Mode truth = crossing_modes(at)[static_cast<std::size_t>(number("mode")) - 1];
     EXPECT_NEAR(number("frequency_hz") * kTwoPi / truth.natural_frequency, 1.0, 2e-3);
@@ -65,7 +42,7 @@ TEST(FitCommand, FindsTheModesAndNumbersThemAlikeAtEveryPosture) {
 }
 
 TEST(FitCommand, UncertaintyHasARowForEachModeAndCoversTheTruth) {
-  const Row row;
+  const FrfRow row;
   ASSERT_EQ(row.fit_all().exit_code, 0);
   const CsvTable modes = read_csv(row.path() / "map" / "modes.csv"),
                  sure = read_csv(row.path() / "map" / "uncertainty.csv");
@@ -78,8 +55,8 @@ TEST(FitCommand, UncertaintyHasARowForEachModeAndCoversTheTruth) {
     };
     EXPECT_EQ(of(sure, "posture"), of(modes, "posture"));
     EXPECT_EQ(of(sure, "mode"), of(modes, "mode"));
-    const Mode truth = crossing_modes(Row::place(static_cast<std::size_t>(of(modes, "posture")) -
-                                                 1))[static_cast<std::size_t>(of(modes, "mode")) - 1];
+    const Mode truth = crossing_modes(FrfRow::place(static_cast<std::size_t>(of(modes, "posture")) -
+                                                    1))[static_cast<std::size_t>(of(modes, "mode")) - 1];
     const double off = std::abs(of(modes, "frequency_hz") - truth.natural_frequency / kTwoPi);
     EXPECT_LT(off, 5.0 * of(sure, "frequency_hz_se"));
     EXPECT_LT(of(sure, "frequency_hz_se"), 0.5);
@@ -89,7 +66,7 @@ TEST(FitCommand, UncertaintyHasARowForEachModeAndCoversTheTruth) {
 }
 
 TEST(FitCommand, TellsTracksLeavingOutDoubtsAndTheNextTap) {
-  const Row row;
+  const FrfRow row;
   const Finished done = row.fit_all();
   for (const char* words :
        {"posture 3 (3.csv): fit off by", " +- ", "reciprocity by", "modes over the postures:", "at 5 of 5 postures",
@@ -98,7 +75,7 @@ TEST(FitCommand, TellsTracksLeavingOutDoubtsAndTheNextTap) {
 }
 
 TEST(FitCommand, JsonHasEveryFigureWithItsDeviation) {
-  const Row row;
+  const FrfRow row;
   const Finished done = row.fit_all({"--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
@@ -121,7 +98,7 @@ TEST(FitCommand, JsonHasEveryFigureWithItsDeviation) {
 }
 
 TEST(FitCommand, GivesTheSameMapOnOneThreadAndOnFour) {
-  const Row row;
+  const FrfRow row;
   ASSERT_EQ(row.fit_all({"--jobs", "1"}).exit_code, 0);
   const std::string modes = content_of(row.path() / "map" / "modes.csv");
   ASSERT_EQ(row.fit_all({"--jobs", "4"}).exit_code, 0);
@@ -168,7 +145,7 @@ TEST(FitCommand, CrossResponsesOfExactlyNothingDoNotOutweighTheOthers) {
 }
 
 TEST(FitCommand, SeveralPosturesWithoutPlacesAreFittedAndTheirPlacesAskedFor) {
-  const Row row;
+  const FrfRow row;
   const Finished done = row.fit({"1.csv", "2.csv", "3.csv", "--out", "map"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("postures.csv has no places"));
@@ -178,7 +155,7 @@ TEST(FitCommand, SeveralPosturesWithoutPlacesAreFittedAndTheirPlacesAskedFor) {
 }
 
 TEST(FitCommand, TakesTheOperatorsPolesForAllOrForOnePosture) {
-  const Row row;
+  const FrfRow row;
   const Finished done = row.fit(
       {"1.csv", "2.csv", "--out", "map", "--postures", "postures.csv", "--poles", "30,140", "--poles", "2=140"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
@@ -191,8 +168,22 @@ TEST(FitCommand, TakesTheOperatorsPolesForAllOrForOnePosture) {
   EXPECT_NEAR(map.postures[1].modes[0].natural_frequency / kTwoPi, 140.0, 1.0);
 }
 
+TEST(FitCommand, NeverTakesPosturesOutOfTheFileItWasGiven) {
+  const FrfRow row;
+  (void)row.write("map/postures.csv", content_of(row.path() / "postures.csv"));
+  const Finished some = row.fit({"1.csv", "2.csv", "--out", "map", "--postures", "map/postures.csv"});
+  EXPECT_EQ(some.exit_code, 3);
+  EXPECT_EQ(some.err,
+            "stillcut: map/postures.csv: would lose posture 3, which no file of responses is of; write the map to "
+            "another folder\n");
+  EXPECT_EQ(content_of(row.path() / "map" / "postures.csv"), content_of(row.path() / "postures.csv"));
+  std::vector<std::string> all = kFrfFiles;
+  for (const char* word : {"--out", "map", "--postures", "map/postures.csv"}) all.emplace_back(word);
+  EXPECT_EQ(row.fit(all).exit_code, 0);
+}
+
 TEST(FitCommand, FitsWithinTheBandOnlyAndByEitherMethod) {
-  const Row row;
+  const FrfRow row;
   for (const char* method : {"lscf", "polynomials"}) {
     const Finished done = row.fit({"1.csv", "--out", "map", "--band", "80:200", "--method", method, "--order", "12"});
     ASSERT_EQ(done.exit_code, 0) << done.err;
@@ -203,7 +194,7 @@ TEST(FitCommand, FitsWithinTheBandOnlyAndByEitherMethod) {
 }
 
 TEST(FitCommand, DrawsTheSamePicturesEveryTime) {
-  const Row row;
+  const FrfRow row;
   for (const char* folder : {"a", "b"})
     ASSERT_EQ(row.fit({"1.csv", "5.csv", "--out", "map", "--postures", "postures.csv", "--plots", folder}).exit_code,
               0);
@@ -211,60 +202,6 @@ TEST(FitCommand, DrawsTheSamePicturesEveryTime) {
     EXPECT_GT(content_of(row.path() / "a" / name).size(), 4000U) << name;
     EXPECT_EQ(content_of(row.path() / "a" / name), content_of(row.path() / "b" / name)) << name;
   }
-}
-
-struct FitRefusal {
-  std::vector<std::string> arguments;
-  int exit_code;
-  std::string names;
-};
-
-TEST(FitCommand, RefusesInOneLineAndLeavesTheMapThatIsThere) {
-  const Row row;
-  (void)row.write("map/modes.csv", "what was there\n");
-  const std::string content = content_of(row.path() / "1.csv");
-  (void)row.write("cut.csv", content.substr(0, content.size() / 2));
-  (void)row.write("gap.csv", "frequency_hz,h_xx_re,h_xx_im\n1,1e-6,0\n2,,0\n3,1e-6,0\n");
-  (void)row.write("nan.csv", "frequency_hz,h_xx_re,h_xx_im\n1,1e-6,0\n2,nan,0\n3,1e-6,0\n");
-  (void)row.write("few.csv", "frequency_hz,h_xx_re,h_xx_im\n1,1e-6,0\n2,1e-6,0\n3,1e-6,0\n");
-  (void)row.write("text.txt", "no file of responses");
-  (void)row.write("x/1.csv", content);
-  std::ostringstream swapped;
-  UffFile uff = uff_of(response_of(crossing_modes(0.0), {.lines = 50}));
-  for (UffFunction& function : uff.functions) std::swap(function.ordinate, function.denominator);
-  write_uff(swapped, uff, UffForm::text);
-  (void)row.write("swapped.uff", swapped.str());
-  const FitRefusal refusals[] = {
-      {{"none.csv", "--out", "map"}, 3, "none.csv: no such file"},
-      {{"1.csv", "cut.csv", "--out", "map"}, 3, "cut.csv:"},
-      {{"gap.csv", "--out", "map"}, 3, "gap.csv:3: h_xx_re"},
-      {{"nan.csv", "--out", "map"}, 3, "nan.csv:3: h_xx_re"},
-      {{"few.csv", "--out", "map"}, 3, "few.csv: "},
-      {{"swapped.uff", "--out", "map"}, 3, "swapped; export response over force"},
-      {{"text.txt", "--out", "map"}, 3, "text.txt: a file of frequency responses must end in"},
-      {{"1.csv", "x/1.csv", "--out", "map"}, 3, "x/1.csv: is of posture 1 as 1.csv is"},
-      {{"1.csv", "cut.csv", "--out", "map", "--postures", "postures.csv"}, 3, "postures.csv: has no posture cut"},
-      {{"1.csv", "--out", "map", "--postures", "no.csv"}, 3, "no.csv: no such file"},
-      {{"1.csv", "--out", "map", "--poles", "9=30"}, 3, "--poles: no file is of posture 9"},
-      {{"1.csv", "--out", "map", "--poles", "3000"}, 3, "1.csv: "},
-      {{"1.csv", "--out", "postures.csv/x"}, 3, "postures.csv/x: cannot be made"},
-      {{"1.csv"}, 2, "--out"},
-      {{"--out", "map"}, 2, "FRF"},
-      {{"1.csv", "--out", "map", "--poles", "30,fast"}, 2, "\"fast\" is no frequency in Hz"},
-      {{"1.csv", "--out", "map", "--poles", "30", "--poles", "31"}, 2, "given twice"},
-      {{"1.csv", "--out", "map", "--band", "80"}, 2, "must be MIN:MAX in Hz"},
-      {{"1.csv", "--out", "map", "--band", "80:20"}, 2, "must be MIN:MAX in Hz"},
-      {{"1.csv", "--out", "map", "--method", "best"}, 2, "best"},
-      {{"1.csv", "--out", "map", "--order", "0"}, 2, "--order"}};
-  for (const FitRefusal& refusal : refusals) {
-    const Finished done = row.fit(refusal.arguments);
-    EXPECT_EQ(done.exit_code, refusal.exit_code) << done.err;
-    EXPECT_THAT(done.err, StartsWith("stillcut: "));
-    EXPECT_THAT(done.err, HasSubstr(refusal.names));
-    EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
-    EXPECT_EQ(done.out, "");
-  }
-  EXPECT_EQ(content_of(row.path() / "map" / "modes.csv"), "what was there\n");
 }
 
 TEST(FitCommand, ASofterToolThanAnyIsDoubted) {

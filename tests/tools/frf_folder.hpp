@@ -70,4 +70,27 @@ inline std::vector<Mode> crossing_modes(double place) {
           {kTwoPi * 140.0, 0.02, 2e7, {0.0, 0.6, 0.8}}};
 }
 
+inline const std::vector<std::string> kFrfFiles{"1.csv", "2.csv", "3.csv", "4.csv", "5.csv"};
+
+// Five postures in a row, 100 mm apart, with noise.
+class FrfRow : public FrfFolder {
+ public:
+  FrfRow() {
+    std::string postures = "posture,x_mm,y_mm,z_mm\n";
+    for (std::size_t i = 0; i < kFrfFiles.size(); ++i) {
+      write_csv(kFrfFiles[i], crossing_modes(place(i)), {.seed = static_cast<unsigned>(i + 1)});
+      postures += std::to_string(i + 1) + "," + std::to_string(100 * i) + ",0,0\n";
+    }
+    (void)write("postures.csv", postures);
+  }
+  static double place(std::size_t i) { return 0.25 * static_cast<double>(i); }
+
+  [[nodiscard]] Finished fit_all(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = kFrfFiles;
+    for (const char* word : {"--out", "map", "--postures", "postures.csv"}) arguments.emplace_back(word);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return fit(arguments);
+  }
+};
+
 }  // namespace stillcut
