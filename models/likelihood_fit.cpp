@@ -1,6 +1,7 @@
 #include "models/likelihood_fit.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,8 @@ namespace stillcut {
 namespace {
 
 using Eigen::Index;
+
+constexpr double kSeenShare = 1e-12;  // of the largest variance: below, an axis is one that no entry shows
 
 // Parameters in units of their own spread, so that the matrix is as well conditioned as it can be; those that no entry
 // shows are left out of it.
@@ -153,8 +156,21 @@ ModalModel model_of_poles(const std::vector<Pole>& poles, const FrfLines& lines,
 double significance(const LikelihoodFit& fit, std::size_t term) {
   const Eigen::Index p = kTermParameters * static_cast<Index>(term) + 2;
   const Eigen::Vector3d a = fit.model.terms[term].root;
-  const double variance = a.dot(fit.covariance.block<3, 3>(p, p) * a);
-  return variance > 0.0 ? a.squaredNorm() * a.squaredNorm() / variance : 0.0;
+  const Eigen::Matrix3d covariance = fit.covariance.block<3, 3>(p, p);
+  double sum = 0.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  for (int k = 0; k < 3; ++k)
+    if (const double variance = eigen.eigenvalues()[k]; variance > kSeenShare * eigen.eigenvalues()[2]) {
+      const double along = eigen.eigenvectors().col(k).dot(a);
+      sum += along * along / variance;
+    }
+  return sum;
+}
+
+double size_deviation(const LikelihoodFit& fit, std::size_t term) {
+  const Eigen::Index p = kTermParameters * static_cast<Index>(term) + 2;
+  const Eigen::Vector3d a = fit.model.terms[term].root;
+  return std::sqrt(std::max(0.0, a.dot(fit.covariance.block<3, 3>(p, p) * a))) / a.squaredNorm();
 }
 
 }  // namespace stillcut

@@ -27,8 +27,11 @@ struct FitEffort {
 [[nodiscard]] ModalModel model_of_poles(const std::vector<Pole>& poles, const FrfLines& lines,
                                         const FrfWeights& weights);
 
-// How far a term stands out of the noise: the square of |a| over its standard deviation, about 1 for none at all. Two
-// terms that stand for one mode have none, as what one has the other may have as well.
+// How far a term stands out of the noise: a^T C^-1 a, about 3 for none at all.
 [[nodiscard]] double significance(const LikelihoodFit& fit, std::size_t term);
+
+// One standard deviation of |a|, relative. Where two terms stand for one mode it is above 1: what one has the other may
+// have as well.
+[[nodiscard]] double size_deviation(const LikelihoodFit& fit, std::size_t term);
 
 }  // namespace stillcut

@@ -19,7 +19,8 @@ constexpr int kMostRounds = 60, kMostDrops = 6;
 constexpr FitEffort kQuick{12, 1.0, 1e-3}, kDeciding{30, 1.0, 1e-4}, kLast{40, 1e-3, 1e-9};
 constexpr std::size_t kMostSplit = 3;  // terms
 constexpr double kSplitApart = 0.01;   // half of what close modes are apart
-constexpr double kLeastOfResponse = 2e-3;
+constexpr double kHonestChi = 4.0;     // times the number of values: noise taken from differences is rough
+constexpr double kLeastOfResponse = 2e-3, kMostSizeDeviation = 1.0;
 constexpr double kMostTermDamping = 0.6;
 constexpr double kLeastTermDamping = 2e-5;
 
@@ -43,7 +44,7 @@ void weigh(SelectedModes& modes, const FrfLines& lines) {
 double worth_of(const SelectedModes& modes, std::size_t r, const FrfLines& lines) {
   const ModalTerm& term = modes.fit.model.terms[r];
   if (!can_be_mode(term.pole, lines) || share_of_response(modes.fit.model, term) < kLeastOfResponse) return 0.0;
-  return significance(modes.fit, r);
+  return size_deviation(modes.fit, r) < kMostSizeDeviation ? significance(modes.fit, r) : 0.0;
 }
 
 // The weakest first; tells whether any was taken away.
@@ -153,7 +154,7 @@ SelectedModes started(const FrfLines& lines, const std::vector<Pole>& poles, con
 double price_of(const SelectedModes& modes, double parameters) {
   double values = 0.0;
   for (const Eigen::VectorXd& weight : modes.weights) values += 2.0 * static_cast<double>(weight.size());
-  return parameters * std::log(values) * modes.alike * std::max(1.0, modes.fit.chi_square / values);
+  return parameters * std::log(values) * modes.alike * std::max(1.0, modes.fit.chi_square / (kHonestChi * values));
 }
 
 double share_of_response(const ModalModel& model, const ModalTerm& term) {
