@@ -16,12 +16,13 @@ constexpr Index kLeastReach = 6;          // lines
 
 }  // namespace
 
-std::optional<MissingMode> missing_mode(const std::vector<Eigen::VectorXcd>& left_over, const FrfLines& lines,
-                                        const FrfWeights& weights) {
-  std::optional<MissingMode> best;
+std::vector<MissingMode> missing_modes(const std::vector<Eigen::VectorXcd>& left_over, const FrfLines& lines,
+                                       const FrfWeights& weights) {
+  std::vector<MissingMode> found;
   const Eigen::VectorXd& omega = lines.omega;
   const Index count = omega.size();
   for (const double damping : kDampings) {
+    MissingMode best;
     for (Index at = 0; at < count;) {
       const double frequency = omega[at], half_width = damping * frequency;
       const auto index_of = [&](double w) {
@@ -43,12 +44,15 @@ std::optional<MissingMode> missing_mode(const std::vector<Eigen::VectorXcd>& lef
         }
         gain += match * match / power;
       }
-      if (!best || gain > best->gain) best = MissingMode{pole, gain};
+      if (gain > best.gain) best = {pole, gain};
       const Index next = index_of(frequency + kStepHalfWidths * half_width);
       at = std::max(at + 1, next);
     }
+    if (best.gain > 0.0) found.push_back(best);
   }
-  return best;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const MissingMode& a, const MissingMode& b) { return a.gain > b.gain; });
+  return found;
 }
 
 }  // namespace stillcut

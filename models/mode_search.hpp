@@ -1,7 +1,7 @@
 // Where a mode is missing: what a fit left over, held against one more mode at every frequency and damping.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "models/modal_model.hpp"
 
@@ -13,8 +13,9 @@ struct MissingMode {
                       // the number of entries
 };
 
-// The mode that would explain most of it; nothing without lines. Damping from 0.1 to 40 %.
-[[nodiscard]] std::optional<MissingMode> missing_mode(const std::vector<Eigen::VectorXcd>& left_over,
-                                                      const FrfLines& lines, const FrfWeights& weights);
+// For each of seven dampings from 0.1 to 40 % the mode that would explain most of it, the best first; nothing without
+// lines.
+[[nodiscard]] std::vector<MissingMode> missing_modes(const std::vector<Eigen::VectorXcd>& left_over,
+                                                     const FrfLines& lines, const FrfWeights& weights);
 
 }  // namespace stillcut

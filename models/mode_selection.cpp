@@ -5,7 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <optional>
 
 #include "models/frf_noise.hpp"
 #include "models/mode_search.hpp"
@@ -17,6 +16,7 @@ constexpr std::size_t kMostTerms = 40;
 constexpr int kMostRounds = 60, kMostDrops = 6;
 // Of a fit that is gone on with anyway, and of one that decides whether a mode is worth its price (50 or more).
 constexpr FitEffort kQuick{12, 1.0, 1e-3}, kDeciding{30, 1.0, 1e-4}, kLast{40, 1e-3, 1e-9};
+constexpr std::size_t kMostTried = 3;  // dampings of a missing mode
 constexpr std::size_t kMostSplit = 3;  // terms
 constexpr double kSplitApart = 0.01;   // half of what close modes are apart
 constexpr double kHonestChi = 4.0;     // times the number of values: noise taken from differences is rough
@@ -119,10 +119,10 @@ bool split_near(SelectedModes& modes, const FrfLines& lines, const Pole& missing
 bool add_missing(SelectedModes& modes, const FrfLines& lines) {
   if (modes.fit.model.terms.size() >= kMostTerms) return false;
   const double price = price_of(modes, kTermParameters);
-  const std::optional<MissingMode> missing = missing_mode(left_over(modes.fit.model, lines), lines, modes.weights);
-  if (!missing || missing->gain < 0.5 * price) return false;
-  return take_if_worth(modes, lines, modes.fit.model, {missing->pole}) ||
-         (missing->gain > price && split_near(modes, lines, missing->pole));
+  const std::vector<MissingMode> missing = missing_modes(left_over(modes.fit.model, lines), lines, modes.weights);
+  for (std::size_t k = 0; k < std::min(kMostTried, missing.size()) && missing[k].gain > 0.5 * price; ++k)
+    if (take_if_worth(modes, lines, modes.fit.model, {missing[k].pole})) return true;
+  return !missing.empty() && missing.front().gain > price && split_near(modes, lines, missing.front().pole);
 }
 
 // Residual terms stay only where they explain something.
