@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "models/chart_poles.hpp"
+#include "models/frf_noise.hpp"
 #include "models/machining.hpp"
 #include "models/mode_selection.hpp"
 #include "models/sentence.hpp"
@@ -19,6 +20,9 @@ constexpr Index kLeastFittedLines = 20;
 constexpr double kNearChartPole = 0.05;  // of the operator's frequency
 constexpr double kFarFromAsked = 0.1;
 constexpr double kManyAlike = 4.0;
+// A remainder so far above what the lines say of their noise, and so much of the response, is structure.
+constexpr double kAboveLineNoise = 2.0, kLeastMisfit = 0.03;
+constexpr double kMostMisfit = 0.5;  // whatever the lines say: narrow resonances look like noise from line to line
 
 std::vector<Pole> poles_of_chart(const StabilizationChart& chart) {
   std::vector<Pole> poles;
@@ -85,8 +89,14 @@ void widen(IdentifiedMode& one, double force_error) {
 void take_modes(ModalFit& result, const SelectedModes& work, double added_decay_per_s, double force_error) {
   std::vector<IdentifiedMode> measured;
   for (std::size_t r = 0; r < work.fit.model.terms.size(); ++r) {
+    const ModalTerm& term = work.fit.model.terms[r];
+    if (!std::isfinite(1.0 / term.root.squaredNorm())) {  // asked for, and nothing moves there
+      result.doubts.push_back(sentence("the mode asked for at ", term.pole.natural_frequency / kTwoPi,
+                                       " Hz came to nothing: left out; ask for it once"));
+      continue;
+    }
     measured.push_back(identified(work, r));
-    widen(measured.back(), force_error / share_of_response(work.fit.model, work.fit.model.terms[r]));
+    widen(measured.back(), force_error / share_of_response(work.fit.model, term));
   }
   std::stable_sort(measured.begin(), measured.end(), [](const IdentifiedMode& a, const IdentifiedMode& b) {
     return a.mode.natural_frequency < b.mode.natural_frequency;
@@ -168,6 +178,17 @@ ModalFit identify_modes(const FrequencyResponse& response, const IdentificationS
     all += entry.values.squaredNorm();
   }
   result.misfit = std::sqrt(left / all);
+  // From line to line: the noise that was fitted with is the remainder itself, and takes whatever is left for noise.
+  const std::vector<Eigen::VectorXd> line_noise = noise_of_differences(lines, rest);
+  double expected = 0.0;
+  for (const Eigen::VectorXd& variance : line_noise) expected += variance.sum();
+  const bool structure_left = left > kAboveLineNoise * kAboveLineNoise * expected;
+  if (result.misfit > kMostMisfit || (result.misfit > kLeastMisfit && structure_left))
+    result.doubts.push_back(sentence(
+        "the fit is off by ", 100.0 * result.misfit, " % of the responses, the noise from line to line is ",
+        100.0 * std::sqrt(expected / all), " %: modes are missing or wrong; narrow the band, or choose the poles"));
+  for (std::string& doubt : reciprocity_doubts(lines, weights_of(line_noise)))
+    result.doubts.push_back(std::move(doubt));
   add_doubts(result, work, settings.poles_hz);
   if (progress) progress(1.0);
   return result;

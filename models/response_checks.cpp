@@ -17,6 +17,8 @@ using Eigen::Index;
 constexpr double kAboveNoise = 4.0;       // standard deviations
 constexpr double kMostGivingPower = 0.3;  // share: above it no receptance
 constexpr double kGap = 3.5;              // times the usual spacing
+constexpr double kMostUnlike = 0.2;       // of a response measured both ways; sensors and hammers are truer
+constexpr double kLeastEnd = 5.0;         // Hz; tap tests reach farther
 
 const std::array<const char*, 3> kAxes{"x", "y", "z"};
 
@@ -110,6 +112,24 @@ void require_receptance(const FrfLines& lines, const FrfWeights& weights) {
   }
 }
 
+std::vector<std::string> reciprocity_doubts(const FrfLines& lines, const FrfWeights& weights) {
+  std::vector<std::string> doubts;
+  for (std::size_t e = 0; e < lines.entries.size(); ++e)
+    for (std::size_t o = 0; o < lines.entries.size(); ++o) {
+      const FrfEntry &entry = lines.entries[e], &other = lines.entries[o];
+      if (entry.response >= entry.force || other.response != entry.force || other.force != entry.response) continue;
+      const double difference = (entry.values - other.values).squaredNorm();
+      const double larger = std::max(entry.values.squaredNorm(), other.values.squaredNorm());
+      const double noise = 2.0 * (weights[e].cwiseInverse().sum() + weights[o].cwiseInverse().sum());
+      if (difference > kMostUnlike * kMostUnlike * larger && difference > 4.0 * noise)
+        doubts.push_back(sentence("the responses ", name_of(entry), " and ", name_of(other), " differ by ",
+                                  100.0 * std::sqrt(difference / larger),
+                                  " % of the larger, and must be alike: one has a wrong sign, scale or channel, and "
+                                  "directions may be wrong; leave that one out or measure it again"));
+    }
+  return doubts;
+}
+
 std::vector<std::string> response_doubts(const FrfLines& lines) {
   std::vector<std::string> doubts;
   const Ties ties(lines);
@@ -128,6 +148,8 @@ std::vector<std::string> response_doubts(const FrfLines& lines) {
         "no cross response ties the axes together: the signs of the directions' components are open and taken as "
         "positive; measure one, e.g. h_yx");
   const Index count = lines.omega.size();
+  if (const double end = lines.omega[count - 1] / kTwoPi; end < kLeastEnd)
+    doubts.push_back(sentence("the responses end at ", end, " Hz: are their frequencies in Hz?"));
   std::vector<double> spacing;
   for (Index n = 1; n < count; ++n) spacing.push_back(lines.omega[n] - lines.omega[n - 1]);
   std::vector<double> sorted = spacing;

@@ -21,8 +21,12 @@ struct ResponseChecks {
 // and for direct responses that give power: of another kind or sign, or swapped.
 void require_receptance(const FrfLines& lines, const FrfWeights& weights);
 
+// Of responses measured both ways that differ by more than the noise in `weights` and sound sensors explain. Whole
+// sentences.
+[[nodiscard]] std::vector<std::string> reciprocity_doubts(const FrfLines& lines, const FrfWeights& weights);
+
 // What the entries leave open but can be carried: axes that were not measured, signs that only a cross response tells,
-// gaps between the lines. Whole sentences.
+// gaps between the lines, frequencies that seem not to be in Hz. Whole sentences.
 [[nodiscard]] std::vector<std::string> response_doubts(const FrfLines& lines);
 
 }  // namespace stillcut

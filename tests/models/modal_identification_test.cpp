@@ -151,6 +151,47 @@ TEST(ModalIdentification, AGapBetweenTheLinesIsSaid) {
   EXPECT_THAT(fit.doubts, testing::Contains(testing::HasSubstr("nothing was measured between 100.5 and 130.5 Hz")));
 }
 
+TEST(ModalIdentification, AResponseMeasuredBothWaysThatDiffersIsSaid) {
+  const auto tells = testing::Contains(testing::HasSubstr("xy and yx differ"));
+  MeasuredStructure structure = measured_robot();
+  EXPECT_THAT(identify_modes(structure.response).doubts, testing::IsEmpty());
+  for (std::complex<double>& value : structure.response.receptance[0][1]) value = -value;
+  EXPECT_THAT(identify_modes(structure.response).doubts, tells);
+  for (std::complex<double>& value : structure.response.receptance[0][1]) value = 0.0;
+  EXPECT_THAT(identify_modes(structure.response).doubts, tells);
+}
+
+TEST(ModalIdentification, MoreModesThanAreFittedAreSaid) {
+  std::vector<Mode> many;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  double hz = 20.0;
+  for (int r = 0; r < 60; ++r, hz *= 1.06)
+    many.push_back(mode_at(hz, 0.01, 1e7, {normal(random), normal(random), normal(random)}));
+  const MeasuredStructure structure = measured(many, {.spacing_hz = 1.0, .lines = 800}, random);
+  EXPECT_THAT(identify_modes(structure.response).doubts, testing::Contains(testing::HasSubstr("modes are missing")));
+}
+
+TEST(ModalIdentification, FrequenciesThatAreNotInHertzAreSaid) {
+  MeasuredStructure structure = measured_robot();
+  for (double& hz : structure.response.frequencies_hz) hz *= 1e-3;
+  EXPECT_THAT(identify_modes(structure.response).doubts, testing::Contains(testing::HasSubstr("in Hz?")));
+}
+
+TEST(ModalIdentification, AModeAskedForManyTimesIsFiniteOrLeftOut) {
+  FrequencyResponse response = measured_robot({.spacing_hz = 1.0, .lines = 1000}).response;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (i + j > 0) response.receptance[i][j].clear();
+  bool left_out = false;
+  for (const double hz : {12.0, 55.0, 200.0, 498.0}) {
+    const ModalFit fit = identify_modes(response, {.poles_hz = {hz, hz, hz}});
+    for (const Mode& mode : fit.as_measured) EXPECT_TRUE(std::isfinite(mode.stiffness)) << hz;
+    left_out = left_out || fit.as_measured.size() < 3;
+  }
+  EXPECT_TRUE(left_out);
+}
+
 TEST(ModalIdentification, WhatIsNoReceptanceIsRefused) {
   const MeasuredStructure structure = measured_robot();
   const auto turned = [&](auto&& by) {
