@@ -11,11 +11,13 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kBlock = 64;           // lines that share a median, at least
-constexpr double kBlockGrowth = 0.05;  // of the lines so far: blocks widen with frequency
-constexpr Index kLinesForAmounts = 1024;
+constexpr Index kNoiseBlock = 64;           // lines that share a median, at least
+constexpr double kNoiseBlockGrowth = 0.05;  // of the lines so far: blocks widen with frequency
+constexpr Index kLinesForAmounts = 128;     // in every stretch over which frequency grows by a factor e
 constexpr int kNoiseSteps = 60;
 constexpr double kOutlier = 25.0;  // times the variance: more is no noise, one in 10^11
+// While modes are still missing, values are taken for no truer than this (80 dB): the way to the minimum is smoother.
+constexpr double kRoughLeastShare = 1e-8;
 constexpr double kLeastShare = 1e-13, kLeastUsual = 1e-16;
 constexpr int kMostAlike = 32;      // lines apart
 constexpr double kNothing = 1e-12;  // of the mean square of the largest entry: no sensor tells so little from none
@@ -25,8 +27,8 @@ std::vector<Index> blocks_of(Index count) {
   std::vector<Index> starts{0};
   while (starts.back() < count) {
     const Index first = starts.back();
-    Index next = first + std::max(kBlock, static_cast<Index>(kBlockGrowth * static_cast<double>(first)));
-    if (count - next < kBlock) next = count;
+    Index next = first + std::max(kNoiseBlock, static_cast<Index>(kNoiseBlockGrowth * static_cast<double>(first)));
+    if (count - next < kNoiseBlock) next = count;
     starts.push_back(next);
   }
   return starts;
@@ -65,21 +67,22 @@ Eigen::VectorXd smooth_mean(const Eigen::VectorXd& squares, double least) {
 }
 
 // What counts as none: so little of a value itself and of the entry's usual ones that no instrument tells it.
-Eigen::VectorXd least_variance(const Eigen::VectorXcd& values) {
+Eigen::VectorXd least_variance(const Eigen::VectorXcd& values, double share) {
   const Eigen::VectorXd squares = values.cwiseAbs2();
   const double usual = median({squares.data(), squares.data() + squares.size()});
-  return (kLeastShare * squares).array() + std::max(kLeastUsual * usual, 1e-300);
+  return (share * squares).array() + std::max(kLeastUsual * usual, 1e-300);
 }
 
 // Amounts of the shapes (columns, a row a line) that make the squares most probable: sum of ln v + square/v is least.
 // Multiplicative steps that never make it larger; amounts stay positive.
 Eigen::VectorXd most_probable_variance(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes,
                                        const Eigen::VectorXd& least) {
-  // Four numbers need no more lines than this.
-  const Index every = std::max<Index>(1, squares.size() / kLinesForAmounts), count = (squares.size() - 1) / every + 1;
-  const Eigen::VectorXd some = squares(Eigen::seqN(0, count, every));
-  const Eigen::MatrixXd parts = shapes(Eigen::seqN(0, count, every), Eigen::all);
-  const Eigen::VectorXd floor = least(Eigen::seqN(0, count, every));
+  // Lines that grow apart as frequency does: four numbers need no more, and the lowest count like the highest.
+  std::vector<Index> lines;
+  for (Index n = 0; n < squares.size(); n += std::max<Index>(1, n / kLinesForAmounts)) lines.push_back(n);
+  const Eigen::VectorXd some = squares(lines);
+  const Eigen::MatrixXd parts = shapes(lines, Eigen::all);
+  const Eigen::VectorXd floor = least(lines);
   Eigen::VectorXd amounts =
       some.mean() / static_cast<double>(parts.cols()) * parts.colwise().mean().cwiseInverse().transpose();
   for (int step = 0; step < kNoiseSteps; ++step) {
@@ -129,7 +132,7 @@ std::vector<Eigen::VectorXd> noise_of_differences(const FrfLines& lines,
       const Index at = std::clamp<Index>(n, 1, count - 2);
       error[n] = (rest[at - 1] - 2.0 * rest[at] + rest[at + 1]) / std::sqrt(6.0);
     }
-    result.push_back(variance_of(lines.omega, error, entry.values, least_variance(entry.values)));
+    result.push_back(variance_of(lines.omega, error, entry.values, least_variance(entry.values, kRoughLeastShare)));
   }
   lend_noise(lines, result);
   return result;
@@ -139,7 +142,8 @@ std::vector<Eigen::VectorXd> noise_of_remainder(const FrfLines& lines, const std
   std::vector<Eigen::VectorXd> result;
   for (std::size_t e = 0; e < left_over.size(); ++e) {
     const FrfEntry& entry = lines.entries[e];
-    result.push_back(variance_of(lines.omega, left_over[e], entry.values - left_over[e], least_variance(entry.values)));
+    result.push_back(
+        variance_of(lines.omega, left_over[e], entry.values - left_over[e], least_variance(entry.values, kLeastShare)));
   }
   lend_noise(lines, result);
   return result;

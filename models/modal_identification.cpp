@@ -17,6 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kLeastFittedLines = 20;
+constexpr double kDriftLines = 3.0, kAboveHighest = 1.5;
 constexpr double kNearChartPole = 0.05;  // of the operator's frequency
 constexpr double kFarFromAsked = 0.1;
 constexpr double kManyAlike = 4.0;
@@ -142,19 +143,43 @@ void add_doubts(ModalFit& result, const SelectedModes& work, const std::vector<d
   }
 }
 
+// Taps with windows, as `stillcut tap` makes them: all lines up to the recorder's limit, whether or not the hammer
+// excites them.
+bool is_tapped(const FrequencyResponse& response) {
+  return response.added_decay_per_s > 0.0 || response.force_error > 0.0;
+}
+
+// The first lines of taps hold what the sensors drift and step by over the record, divided by the square of the least
+// frequencies.
+double first_told_hz(const FrequencyResponse& response) {
+  return is_tapped(response) ? kDriftLines * response.frequencies_hz.front() : 0.0;
+}
+
+// Far above the highest mode a tapped response is mass alone, told by what little force the hammer has there: its
+// errors would be taken out on the stiffness of the lowest modes.
+double last_told_hz(const FrequencyResponse& response, const StabilizationChart& chart) {
+  const std::vector<ChartPole> agreed = agreed_poles(chart);
+  return is_tapped(response) && !agreed.empty() ? kAboveHighest * agreed.back().natural_frequency / kTwoPi : kInfinity;
+}
+
 }  // namespace
 
 ModalFit identify_modes(const FrequencyResponse& response, const IdentificationSettings& settings,
                         const std::function<void(double)>& progress) {
   require_sound_response(response);
-  const FrfLines lines = lines_between(response, settings.lowest_hz, settings.highest_hz);
+  FrfLines lines = lines_between(response, std::max(settings.lowest_hz, first_told_hz(response)), settings.highest_hz);
   if (lines.omega.size() < kLeastFittedLines)
     throw std::invalid_argument(
         sentence("only ", lines.omega.size(), " lines in the band, at least ", kLeastFittedLines, " are needed"));
-  const FrfWeights weights = rough_weights(lines);
+  FrfWeights weights = rough_weights(lines);
   require_receptance(lines, weights);
   ModalFit result;
   result.chart = chart_of(lines, weights, settings.most_order, settings.method);
+  if (settings.highest_hz == kInfinity) {
+    lines = lines_between(response, std::max(settings.lowest_hz, first_told_hz(response)),
+                          last_told_hz(response, result.chart));
+    weights = rough_weights(lines);
+  }
   if (progress) progress(0.25);
   const SelectedModes work = settings.poles_hz.empty()
                                  ? select_modes(lines, poles_of_chart(result.chart), weights, progress)

@@ -12,7 +12,7 @@ using Eigen::Index;
 constexpr std::array kDampings{0.001, 0.0025, 0.006, 0.015, 0.035, 0.08, 0.2, 0.4};
 constexpr double kStepHalfWidths = 0.5;   // of the half-width zeta w from one frequency to the next
 constexpr double kReachHalfWidths = 8.0;  // on both sides of it
-constexpr Index kLeastReach = 6;          // lines
+constexpr Index kLeastLinesReached = 6;   // lines
 
 }  // namespace
 
@@ -29,9 +29,9 @@ std::vector<MissingMode> missing_modes(const std::vector<Eigen::VectorXcd>& left
         return std::lower_bound(omega.data(), omega.data() + count, w) - omega.data();
       };
       const Index first =
-          std::max<Index>(0, std::min(at - kLeastReach, index_of(frequency - kReachHalfWidths * half_width)));
+          std::max<Index>(0, std::min(at - kLeastLinesReached, index_of(frequency - kReachHalfWidths * half_width)));
       const Index end =
-          std::min(count, std::max(at + kLeastReach, index_of(frequency + kReachHalfWidths * half_width)));
+          std::min(count, std::max(at + kLeastLinesReached, index_of(frequency + kReachHalfWidths * half_width)));
       const Pole pole{frequency, damping};
       const Eigen::VectorXcd g = pole_response(pole, omega.segment(first, end - first));
       double gain = 0.0;

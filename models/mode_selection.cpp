@@ -13,7 +13,7 @@ namespace stillcut {
 namespace {
 
 constexpr std::size_t kMostTerms = 40;
-constexpr int kMostRounds = 60, kMostDrops = 6;
+constexpr int kMostSelectionRounds = 60, kMostDrops = 6;
 // Of a fit that is gone on with anyway, and of one that decides whether a mode is worth its price (50 or more).
 constexpr FitEffort kQuick{12, 1.0, 1e-3}, kDeciding{30, 1.0, 1e-4}, kLast{40, 1e-3, 1e-9};
 constexpr std::size_t kMostTried = 3;  // dampings of a missing mode
@@ -180,13 +180,13 @@ SelectedModes select_modes(const FrfLines& lines, const std::vector<Pole>& start
                            const std::function<void(double)>& progress) {
   SelectedModes modes = started(lines, start, weights);
   int drops = 0;  // what is added and dropped in turn would go on for ever
-  for (int round = 0; round < kMostRounds && drops < kMostDrops; ++round) {
+  for (int round = 0; round < kMostSelectionRounds && drops < kMostDrops; ++round) {
     weigh_roughly(modes, lines);
     refit(modes, lines);
     const bool dropped = drop_needless(modes, lines);
     drops += dropped ? 1 : 0;
     if (!add_missing(modes, lines) && !dropped) break;
-    if (progress) progress(0.3 + 0.5 * round / kMostRounds);
+    if (progress) progress(0.3 + 0.5 * round / kMostSelectionRounds);
   }
   // Weights and modes, each by the other's last word.
   for (int round = 0; round < 3; ++round) {

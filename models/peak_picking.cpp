@@ -13,14 +13,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kApart = 0.03;
+constexpr double kPeaksApart = 0.03;
 constexpr double kLeastOfHighest = 1e-3;
 
 bool is_peak(const FrfLines& lines, const Eigen::VectorXd& power, Index at) {
   if (power[at] < kLeastOfHighest * power.maxCoeff()) return false;
   for (const Index way : {-1, 1})
-    for (Index n = at + way; n >= 0 && n < power.size() && std::abs(lines.omega[n] / lines.omega[at] - 1.0) < kApart;
-         n += way)
+    for (Index n = at + way;
+         n >= 0 && n < power.size() && std::abs(lines.omega[n] / lines.omega[at] - 1.0) < kPeaksApart; n += way)
       if (power[n] > power[at]) return false;
   return at > 0 && at + 1 < power.size();
 }

@@ -15,6 +15,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kAboveNoise = 4.0;       // standard deviations
+constexpr double kFarAboveNoise = 20.0;   // likewise
 constexpr double kMostGivingPower = 0.3;  // share: above it no receptance
 constexpr double kGap = 3.5;              // times the usual spacing
 constexpr double kMostUnlike = 0.2;       // of a response measured both ways; sensors and hammers are truer
@@ -118,10 +119,16 @@ std::vector<std::string> reciprocity_doubts(const FrfLines& lines, const FrfWeig
     for (std::size_t o = 0; o < lines.entries.size(); ++o) {
       const FrfEntry &entry = lines.entries[e], &other = lines.entries[o];
       if (entry.response >= entry.force || other.response != entry.force || other.force != entry.response) continue;
-      const double difference = (entry.values - other.values).squaredNorm();
-      const double larger = std::max(entry.values.squaredNorm(), other.values.squaredNorm());
-      const double noise = 2.0 * (weights[e].cwiseInverse().sum() + weights[o].cwiseInverse().sum());
-      if (difference > kMostUnlike * kMostUnlike * larger && difference > 4.0 * noise)
+      // Where either stands far out of the noise, each line by how well it is known.
+      double difference = 0.0, larger = 0.0;
+      for (Index n = 0; n < lines.omega.size(); ++n) {
+        const double weight = std::min(weights[e][n], weights[o][n]);
+        const double strength = std::max(std::norm(entry.values[n]), std::norm(other.values[n]));
+        if (strength * weight < kFarAboveNoise * kFarAboveNoise) continue;
+        difference += weight * std::norm(entry.values[n] - other.values[n]);
+        larger += weight * strength;
+      }
+      if (difference > kMostUnlike * kMostUnlike * larger)
         doubts.push_back(sentence("the responses ", name_of(entry), " and ", name_of(other), " differ by ",
                                   100.0 * std::sqrt(difference / larger),
                                   " % of the larger, and must be alike: one has a wrong sign, scale or channel, and "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -17,7 +18,8 @@ namespace stillcut {
 
 namespace {
 
-constexpr double kLinesShare = 0.2;  // of the record: a force window up to this is short
+constexpr double kExcitedShare = 0.01;  // of the highest power of force
+constexpr double kLinesShare = 0.2;     // of the record: a force window up to this is short
 
 // A value for each line, from the one after 0 Hz, of which an acceleration tells nothing.
 struct TapSums {
@@ -137,7 +139,10 @@ double noise_of_force(const std::vector<double>& force, double rest) {
 // lines share it.
 double shared_force_error(const TapSums& sums, const TapSettings& settings, double record_s) {
   if (!(settings.force_window_s < kLinesShare * record_s)) return 0.0;
-  std::vector<double> power = sums.force_power;
+  // Where the hammer excites: beyond, nothing is told anyway.
+  const double least = kExcitedShare * std::ranges::max(sums.force_power);
+  std::vector<double> power;
+  std::ranges::copy_if(sums.force_power, std::back_inserter(power), [&](double value) { return value >= least; });
   const double usual = median_of(std::move(power));
   return usual > 0.0 ? std::sqrt(0.5 * sums.force_noise_power / (usual * static_cast<double>(sums.hits))) : 0.0;
 }

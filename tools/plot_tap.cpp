@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::array kHammerColors{plot::kBlue, plot::kVermilion, plot::kGreen};
 // [response][force]: what is measured along the hammer in the hammer's colour.
-constexpr std::array<std::array<plot::Color, 3>, 3> kEntryColors{{{plot::kBlue, plot::kOrange, plot::kPurple},
-                                                                  {plot::kSkyBlue, plot::kVermilion, plot::kYellow},
-                                                                  {plot::kGrey, plot::kInk, plot::kGreen}}};
+constexpr std::array<std::array<plot::Color, 3>, 3> kTapEntryColors{{{plot::kBlue, plot::kOrange, plot::kPurple},
+                                                                     {plot::kSkyBlue, plot::kVermilion, plot::kYellow},
+                                                                     {plot::kGrey, plot::kInk, plot::kGreen}}};
 constexpr double kPhaseShown = 0.8;                  // coherence from which a phase is more than chance
 constexpr double kBefore_ms = 1.0, kAfter_ms = 6.0;  // of a pulse, shown
 
@@ -77,7 +77,7 @@ plot::Figure tap_figure(const std::string& title, std::span<const TappedDirectio
       const ComplexValues& values = response.receptance.at(axis).at(force);
       if (values.empty()) continue;
       plot::Line line{.x = {hz.begin(), hz.begin() + static_cast<std::ptrdiff_t>(shown)}, .y = {}, .label = ""};
-      line.color = kEntryColors.at(axis).at(force);
+      line.color = kTapEntryColors.at(axis).at(force);
       line.width = axis == force ? 1.6 : 0.9;
       plot::Line angle = line, agreement = line;
       const std::vector<double>& known = response.coherence.at(axis).at(force);
