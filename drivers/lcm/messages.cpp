@@ -11,10 +11,11 @@
 #include <stillcut/status_t.hpp>
 #include <string>
 
+#include "drivers/lcm/message_bytes.hpp"
+
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kNsPerUs = 1000;
 constexpr std::int64_t kUsPerMs = 1000;
 
 // Beyond these no machine moves: such a message is a fault of the sender.
@@ -29,10 +30,6 @@ constexpr const char* kWrongType =
     "the bytes are no message of this type; is the sender built from the same .lcm files?";
 constexpr const char* kBadTime = "utime is out of range";
 
-// Rounds down, as stamps before 1970 would show.
-std::int64_t to_us(std::int64_t ns) { return ns / kNsPerUs - (ns % kNsPerUs < 0 ? 1 : 0); }
-bool is_time(std::int64_t us) { return us >= -kLastUs && us <= kLastUs; }
-
 bool within(double value, double min, double max) { return value >= min && value <= max; }  // false for NaN
 template <class Range>
 bool all_within(const Range& values, double min, double max) {
@@ -43,13 +40,6 @@ bool all_within(const Range& values, double min, double max) {
 }
 bool unknown_or_within(double value, double min, double max) { return std::isnan(value) || within(value, min, max); }
 
-template <class Message>
-MessageBytes to_bytes(const Message& message) {
-  MessageBytes bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 // A text is the last field of every type that has one: its length (four bytes, the terminating zero counted) must lead
 // exactly to the message's end. The generated code does not check a length below 1.
 template <class Message>
@@ -57,9 +47,7 @@ bool text_fits(std::span<const std::uint8_t> bytes, const Message& empty) {
   constexpr std::size_t kLengthBytes = 4, kTerminator = 1;
   const auto text_at = static_cast<std::size_t>(empty.getEncodedSize()) - kTerminator;
   if (bytes.size() < text_at + kTerminator) return false;
-  std::size_t length = 0;
-  for (const std::uint8_t byte : bytes.subspan(text_at - kLengthBytes, kLengthBytes)) length = length << 8 | byte;
-  return text_at + length == bytes.size();
+  return text_at + count_at(bytes, text_at - kLengthBytes) == bytes.size();
 }
 
 // False when the bytes are of another type, cut short or too long. `message` comes as its default.
@@ -69,8 +57,7 @@ bool from_bytes(std::span<const std::uint8_t> bytes, Message& message) {
   || requires { message.note; };
   if (bytes.size() > kLargestMessage) return false;
   if (kHasText && !text_fits(bytes, message)) return false;
-  const int size = static_cast<int>(bytes.size());
-  return message.decode(bytes.data(), 0, size) == size;
+  return decode_whole(bytes, message);
 }
 
 template <class T>
@@ -111,13 +98,11 @@ const char* reason_to_refuse(const robot_path_t& m) {
   return nullptr;
 }
 
-// The generated code makes as many points as `count` asks for before it looks at the bytes.
 bool count_fits(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kFingerprint = 8, kTime = 8, kCount = 4;
   constexpr std::size_t kPoint = 8 * (1 + 6 + 3 + 1 + 1) + 1;
   if (bytes.size() < kFingerprint + kTime + kCount) return false;
-  std::size_t count = 0;
-  for (const std::uint8_t byte : bytes.subspan(kFingerprint + kTime, kCount)) count = count << 8 | byte;
+  const std::size_t count = count_at(bytes, kFingerprint + kTime);
   return count <= RobotPath::kMaxPoints && bytes.size() == kFingerprint + kTime + kCount + count * kPoint;
 }
 
