@@ -5,7 +5,6 @@
 #include <stillcut/correction_ack_t.hpp>
 #include <stillcut/correction_t.hpp>
 #include <stillcut/event_t.hpp>
-#include <stillcut/loop_times_t.hpp>
 #include <stillcut/robot_path_t.hpp>
 #include <stillcut/robot_state_t.hpp>
 #include <stillcut/status_t.hpp>
@@ -64,8 +63,6 @@ template <class T>
 Received<T> refused(const char* why_not) {
   return {T{}, why_not};
 }
-
-std::string text_of(const ShortText& text) { return {text.begin(), std::find(text.begin(), text.end(), '\0')}; }
 
 const char* reason_to_refuse(const robot_state_t& m) {
   if (!all_within(m.joint_position_rad, -kMaxJointRad, kMaxJointRad)) return "joint_position_rad is no angle";
@@ -191,27 +188,6 @@ MessageBytes encode(const Event& event) {
   m.spindle_speed_rpm = event.spindle_speed_rpm;
   m.note = text_of(event.note);
   return to_bytes(m);
-}
-
-MessageBytes encode(const LoopTimes& times, std::int64_t stamp_ns) {
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  loop_times_t message;
-  message.utime = to_us(stamp_ns);
-  message.ticks = static_cast<std::int64_t>(times.loop.ticks.load());
-  message.overruns = static_cast<std::int64_t>(times.loop.overruns.load());
-  message.skipped = static_cast<std::int64_t>(times.loop.skipped.load());
-  message.times_out = static_cast<std::int64_t>(times.times_out.load());
-  message.in_time = times.in_time.load() ? 1 : 0;
-  for (const NamedLatency& stage : named_latencies(times)) {
-    message.stage.emplace_back(stage.name);
-    message.count.push_back(static_cast<std::int64_t>(stage.times.count));
-    message.p50_us.push_back(us(stage.times.p50_ns));
-    message.p99_us.push_back(us(stage.times.p99_ns));
-    message.p999_us.push_back(us(stage.times.p999_ns));
-    message.max_us.push_back(us(stage.times.max_ns));
-  }
-  message.stages = static_cast<std::int32_t>(message.stage.size());
-  return to_bytes(message);
 }
 
 MessageBytes encode(const Status& status) {

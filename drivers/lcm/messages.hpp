@@ -11,15 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "rt/loop_times.hpp"
 #include "rt/signals.hpp"
 
 namespace stillcut {
 
 inline constexpr const char *kRobotStateChannel = "ROBOT_STATE", *kRobotAckChannel = "ROBOT_ACK",
                             *kRobotPathChannel = "ROBOT_PATH", *kCorrectionChannel = "STILLCUT_CORRECTION",
-                            *kEventChannel = "STILLCUT_EVENT", *kStatusChannel = "STILLCUT_STATUS",
-                            *kLatencyChannel = "STILLCUT_LATENCY";
+                            *kEventChannel = "STILLCUT_EVENT", *kStatusChannel = "STILLCUT_STATUS";
 
 // The last microsecond, counted from 1970, that fits in nanoseconds.
 inline constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / 1000;
@@ -32,7 +30,6 @@ MessageBytes encode(const CorrectionAck& ack, std::string_view reason = {});
 MessageBytes encode(const Correction& correction);
 MessageBytes encode(const Event& event);
 MessageBytes encode(const Status& status);
-MessageBytes encode(const LoopTimes& times, std::int64_t stamp_ns);
 
 // A decoded message, or why it cannot be trusted ("feed_rate_m_per_s is not a number from 0 to 100").
 template <class T>

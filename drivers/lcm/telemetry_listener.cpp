@@ -18,22 +18,26 @@ Received<TelemetryMessage> any(std::span<const std::uint8_t> bytes) {
   return {std::move(message.value)};
 }
 
+// In the order of TelemetryMessage's kinds.
 struct Channel {
   const char* name;
   Decode decode;
 };
-constexpr std::array<Channel, 10> kChannels{{{kStatusChannel, any<decode_status>},
-                                             {kEventChannel, any<decode_event>},
-                                             {kCorrectionChannel, any<decode_correction>},
-                                             {kMonitorChannel, any<decode_monitor>},
-                                             {kSpectrumChannel, any<decode_spectrum>},
-                                             {kVibrationChannel, any<decode_vibration>},
-                                             {kDiagramChannel, any<decode_diagram>},
-                                             {kHealthChannel, any<decode_health>},
-                                             {kLatencyChannel, any<decode_latency>},
-                                             {kHistogramChannel, any<decode_histogram>}}};
+constexpr std::array<Channel, std::variant_size_v<TelemetryMessage>> kChannels{
+    {{kStatusChannel, any<decode_status>},
+     {kEventChannel, any<decode_event>},
+     {kCorrectionChannel, any<decode_correction>},
+     {kMonitorChannel, any<decode_monitor>},
+     {kSpectrumChannel, any<decode_spectrum>},
+     {kVibrationChannel, any<decode_vibration>},
+     {kDiagramChannel, any<decode_diagram>},
+     {kHealthChannel, any<decode_health>},
+     {kLatencyChannel, any<decode_latency>},
+     {kHistogramChannel, any<decode_histogram>}}};
 
 }  // namespace
+
+const char* channel_of(const TelemetryMessage& message) noexcept { return kChannels[message.index()].name; }
 
 Received<TelemetryMessage> decode_telemetry(std::string_view channel, std::span<const std::uint8_t> bytes) {
   for (const Channel& known : kChannels)

@@ -51,6 +51,22 @@ bool names_fit(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
+LatencyReport latency_report(const LoopTimes& times, std::int64_t stamp_ns) {
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
+  LatencyReport report{stamp_ns,
+                       count(times.loop.ticks.load()),
+                       count(times.loop.overruns.load()),
+                       count(times.loop.skipped.load()),
+                       count(times.times_out.load()),
+                       times.in_time.load(),
+                       {}};
+  for (const NamedLatency& stage : named_latencies(times))
+    report.stages.push_back({stage.name, count(stage.times.count), us(stage.times.p50_ns), us(stage.times.p99_ns),
+                             us(stage.times.p999_ns), us(stage.times.max_ns)});
+  return report;
+}
+
 HistogramReport histogram_report(const LoopTimes& times, std::int64_t stamp_ns) {
   HistogramReport report{.stamp_ns = stamp_ns};
   const auto fill = [](const LatencyHistogram& histogram, HistogramReport::Counts& counts) {
@@ -160,6 +176,26 @@ MessageBytes encode(const HealthReport& report) {
     m.saturated.push_back(sensor.saturated);
     m.not_finite.push_back(sensor.not_finite);
   }
+  return to_bytes(m);
+}
+
+MessageBytes encode(const LatencyReport& report) {
+  loop_times_t m{};
+  m.utime = to_us(report.stamp_ns);
+  m.ticks = report.ticks;
+  m.overruns = report.overruns;
+  m.skipped = report.skipped;
+  m.times_out = report.times_out;
+  m.in_time = report.in_time ? 1 : 0;
+  for (const LatencyReport::Stage& stage : report.stages) {
+    m.stage.push_back(stage.name);
+    m.count.push_back(stage.count);
+    m.p50_us.push_back(stage.p50_us);
+    m.p99_us.push_back(stage.p99_us);
+    m.p999_us.push_back(stage.p999_us);
+    m.max_us.push_back(stage.max_us);
+  }
+  m.stages = static_cast<std::int32_t>(m.stage.size());
   return to_bytes(m);
 }
 

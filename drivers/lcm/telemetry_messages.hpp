@@ -11,12 +11,14 @@
 
 #include "drivers/lcm/messages.hpp"
 #include "dsp/numbers.hpp"
+#include "rt/loop_times.hpp"
 
 namespace stillcut {
 
 inline constexpr const char *kMonitorChannel = "STILLCUT_MONITOR", *kSpectrumChannel = "STILLCUT_SPECTRUM",
                             *kVibrationChannel = "STILLCUT_VIBRATION", *kDiagramChannel = "STILLCUT_DIAGRAM",
-                            *kHealthChannel = "STILLCUT_HEALTH", *kHistogramChannel = "STILLCUT_HISTOGRAM";
+                            *kHealthChannel = "STILLCUT_HEALTH", *kLatencyChannel = "STILLCUT_LATENCY",
+                            *kHistogramChannel = "STILLCUT_HISTOGRAM";
 
 // monitor_t
 struct MonitorReport {
@@ -91,7 +93,7 @@ struct HealthReport {
   std::vector<SensorHealth> sensors;  // at most kMaxSensors
 };
 
-// loop_times_t as received
+// loop_times_t
 struct LatencyReport {
   struct Stage {
     std::string name;
@@ -104,6 +106,7 @@ struct LatencyReport {
   bool in_time = true;
   std::vector<Stage> stages;
 };
+LatencyReport latency_report(const LoopTimes& times, std::int64_t stamp_ns);
 
 // histogram_t
 struct HistogramReport {
@@ -122,6 +125,7 @@ MessageBytes encode(const SpectrumReport& report);
 MessageBytes encode(const VibrationReport& report);
 MessageBytes encode(const DiagramReport& report);
 MessageBytes encode(const HealthReport& report);
+MessageBytes encode(const LatencyReport& report);
 MessageBytes encode(const HistogramReport& report);
 
 // Refused: bytes of another type or length, counts beyond the bounds above, states and kinds out of range.
@@ -137,6 +141,7 @@ Received<HistogramReport> decode_histogram(std::span<const std::uint8_t> bytes);
 using TelemetryMessage = std::variant<Status, Event, Correction, MonitorReport, SpectrumReport, VibrationReport,
                                       DiagramReport, HealthReport, LatencyReport, HistogramReport>;
 
+const char* channel_of(const TelemetryMessage& message) noexcept;
 // By the channel's name. Nothing of ours: "not a channel of Stillcut's".
 Received<TelemetryMessage> decode_telemetry(std::string_view channel, std::span<const std::uint8_t> bytes);
 // Every channel that decode_telemetry knows.

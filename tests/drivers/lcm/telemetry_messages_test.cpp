@@ -47,7 +47,7 @@ HistogramReport some_histogram() {
 MessageBytes some_latency() {
   LoopTimes times;
   times.loop.wakeup.record(21'000);
-  return encode(times, kWhen_ns);
+  return encode(latency_report(times, kWhen_ns));
 }
 
 struct Named {
