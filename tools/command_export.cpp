@@ -131,11 +131,13 @@ class ExportFiles {
   }
 
   void tell(const PlaybackSummary& played, std::ostream& out) const {
-    out << samples_ << " samples";
-    if (missing_ > 0) out << ", " << missing_ << " missing among them (empty in CSV, silence in WAV, 0 in UFF)";
-    out << "; the recording was played up to " << csv_number(std::round(played.played_s * 1e3) / 1e3) << " s\n";
+    const auto in_ms = [](double value) { return csv_number(std::round(value * 1e3) / 1e3); };
+    out << samples_ << " samples from " << in_ms(options_.from_s) << " s to "
+        << in_ms(std::min(options_.to_s, played.played_s)) << " s";
+    if (missing_ > 0) out << ", " << missing_ << " more are missing (empty in CSV, silence in WAV, 0 in UFF)";
+    out << '\n';
     if (wav_)
-      out << options_.wav << ": full scale is " << csv_number(full_scale_) << " m/s², " << wav_->sample_rate_hz()
+      out << options_.wav << ": full scale is " << in_ms(full_scale_) << " m/s², " << wav_->sample_rate_hz()
           << " samples a second\n";
     if (mcap_) out << options_.mcap << ": " << mcap_->messages() << " messages\n";
   }
@@ -190,8 +192,9 @@ void export_recording(const ExportOptions& options) {
   double speed_rpm = kNaN;
   std::int64_t origin_ns = 0;
   const auto in_window = [&](std::int64_t stamp_ns) {
-    const double time_s = static_cast<double>(stamp_ns - origin_ns) * 1e-9;
-    return time_s >= options.from_s && time_s < options.to_s;
+    const auto us = [](double seconds) { return std::round(seconds * 1e6); };  // as events are written
+    const double time_us = std::round(static_cast<double>(stamp_ns - origin_ns) * 1e-3);
+    return time_us >= us(options.from_s) && time_us < us(options.to_s);
   };
   PlaybackListener listener;
   listener.on_frame = [&](const Pipeline& pipeline) {

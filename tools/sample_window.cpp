@@ -6,10 +6,12 @@
 namespace stillcut {
 namespace {
 
-// How many of `count` evenly spaced moments, the first at `begin`, lie before `limit`, to a millionth of a step: where
-// the limit is a sample's own time, rounding must not decide.
+constexpr double kSameMoment = 1e-4;  // of a step
+
+// How many of `count` evenly spaced moments, the first at `begin`, lie before `limit`. Where it is a sample's own
+// time as CSV has it, rounding must not decide.
 std::int64_t moments_before(double limit, double begin, double step, std::int64_t count) {
-  const double place = std::ceil((limit - begin) / step - 1e-6);  // of the first that does not
+  const double place = std::ceil((limit - begin) / step - kSameMoment);  // of the first that does not
   if (!(place > 0.0)) return 0;
   return place < static_cast<double>(count) ? static_cast<std::int64_t>(place) : count;
 }
