@@ -1,0 +1,13 @@
+import { defineConfig } from 'vite';
+
+// `npm run dev` shows the mock server's stream; `vite build --outDir` is given by CMake.
+export default defineConfig({
+  base: './', // the page may stand behind a proxy, below any path
+  server: { proxy: { '/api': 'http://localhost:8099' } },
+  build: {
+    target: 'es2022',
+    assetsInlineLimit: 0, // no data: addresses, which the content security policy would refuse
+    modulePreload: false,
+    emptyOutDir: true,
+  },
+});
