@@ -1,5 +1,6 @@
 // A uPlot chart that fills its host, follows its size, and is set up anew when theme or type size changes.
 import uPlot from 'uplot';
+import { fixed } from './format';
 import { look, type Look } from './look';
 
 type Options = Omit<uPlot.Options, 'width' | 'height'>;
@@ -49,6 +50,12 @@ export class Chart {
   }
 }
 
+/** The digits that tell one tick from the next. */
+function decimals(splits: number[]): number {
+  const step = Math.abs((splits[1] ?? 1) - (splits[0] ?? 0));
+  return step >= 1 ? 0 : Math.min(Math.ceil(-Math.log10(step) - 1e-9) + (/[1-9]5/.test(step.toPrecision(2)) ? 1 : 0), 4);
+}
+
 export function rebuildCharts(): void {
   for (const chart of charts) chart.rebuild();
 }
@@ -63,14 +70,17 @@ function axis(look: Look, label: string, more: uPlot.Axis = {}): uPlot.Axis {
     labelSize: 1.4 * look.rem,
     labelGap: 0,
     gap: 4,
-    grid: { stroke: look.line, width: 1 },
-    ticks: { stroke: look.line, width: 1, size: 4 },
+    values: (_, splits) => splits.map((v) => fixed(v, decimals(splits))),
     ...more,
+    grid: { stroke: look.line, width: 1, ...more.grid },
+    ticks: { stroke: look.line, width: 1, size: 4, ...more.ticks },
   };
 }
 
 /** Width of every vertical axis in root ems, label included: charts below each other line up. */
-export const sideEms = 4;
+export const sideEms = 4.6;
+/** Room at a chart's right, for half a label. */
+export const rightEms = 1.6;
 
 export function sideAxis(look: Look, label: string, more: uPlot.Axis = {}): uPlot.Axis {
   return axis(look, label, { size: (sideEms - 1.4) * look.rem, space: 2 * look.rem, ...more });

@@ -1,6 +1,6 @@
 // Health of the sensors and of every place where data can be lost on the way. What is not as it should be is marked.
 import { byId, fillRows, make, setText } from './dom';
-import { fixed, quantity } from './format';
+import { fixed } from './format';
 import type { Health } from './protocol';
 
 const rateErrorMarked_percent = 0.5;
@@ -12,15 +12,18 @@ export function healthPanel(): { show(health: Health): void } {
   let doubts = '';
   return {
     show(health) {
-      fillRows(byId('sensors'), health.sensors.map((s) => {
-        const off = Math.abs(s.rate_error_percent ?? 0) > rateErrorMarked_percent || s.rate_hz === 0;
-        return [
-          s.name,
-          `${off ? '!' : ''}${quantity(s.rate_hz, 0, 'Hz')}`,
-          quantity(s.rate_error_percent, Math.abs(s.rate_error_percent ?? 0) < 10 ? 3 : 0, '%'),
-          lossy(s.frames_lost), lossy(s.gaps), lossy(s.saturated), lossy(s.not_finite),
-        ];
-      }));
+      const { sensors } = health;
+      const off = (s: Health['sensors'][number]): boolean =>
+        Math.abs(s.rate_error_percent ?? 0) > rateErrorMarked_percent || s.rate_hz === 0;
+      fillRows(byId('sensors'), [
+        ['', ...sensors.map((s) => s.name)],
+        ['rate, Hz', ...sensors.map((s) => `${off(s) ? '!' : ''}${fixed(s.rate_hz, 0)}`)],
+        ['rate error, %', ...sensors.map((s) => fixed(s.rate_error_percent, Math.abs(s.rate_error_percent ?? 0) < 10 ? 3 : 0))],
+        ['frames lost', ...sensors.map((s) => lossy(s.frames_lost))],
+        ['gaps', ...sensors.map((s) => lossy(s.gaps))],
+        ['samples saturated', ...sensors.map((s) => lossy(s.saturated))],
+        ['samples not finite', ...sensors.map((s) => lossy(s.not_finite))],
+      ]);
       fillRows(byId('hops'), health.hops.map((h) => [h.hop, lossy(h.lost)]));
       if (doubts !== health.doubts.join()) {
         doubts = health.doubts.join();

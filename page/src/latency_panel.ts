@@ -1,6 +1,6 @@
 // How long each stage takes: a histogram over a logarithmic time with p99.9 and the longest marked, and a table.
 import type uPlot from 'uplot';
-import { bottomAxis, Chart, plain, sideAxis } from './chart';
+import { bottomAxis, Chart, plain, rightEms, sideAxis } from './chart';
 import { byId, fillRows, setText } from './dom';
 import { fixed, microseconds } from './format';
 import { look, rimmedText } from './look';
@@ -65,20 +65,24 @@ export function latencyPanel(): LatencyPanel {
     rimmedText(ctx, `${words} ${microseconds(us)}`, at, y, colour);
   };
 
-  const decades = (_: uPlot, values: number[]): string[] =>
-    values.map((v) => (/^1e/.test(v.toExponential()) ? microseconds(v).replace('.0', '').replace('.00', '') : ''));
-  const counts = (_: uPlot, values: number[]): string[] =>
-    values.map((v) => (/^1e/.test(v.toExponential()) && v >= 1 ? (v < 1e4 ? fixed(v, 0) : `10${superscript(Math.log10(v))}`) : ''));
+  // Of the ticks of a logarithmic axis only powers of ten: more would be a fog of lines.
+  const powers = (_: uPlot, splits: number[]): (number | null)[] =>
+    splits.map((v) => (v >= 1 && v.toExponential().startsWith('1e') ? v : null));
+  const onlyPowers = { filter: powers, grid: { filter: powers }, ticks: { filter: powers } };
+  const times = (_: uPlot, values: (number | null)[]): string[] =>
+    values.map((v) => (v === null ? '' : microseconds(v).replace(/\.0+/, '')));
+  const counts = (_: uPlot, values: (number | null)[]): string[] =>
+    values.map((v) => (v === null ? '' : v < 1e4 ? fixed(v, 0) : `10${superscript(Math.log10(v))}`));
   const chart = new Chart(byId('latency-chart'), (l) => ({
     ...plain,
-    padding: [2.7 * l.rem, l.rem, 0, 0],
+    padding: [2.7 * l.rem, rightEms * l.rem, 0, 0],
     scales: {
       x: { time: false, distr: 3, range: () => edges },
       y: { distr: 3, range: () => [0.5, top] },
     },
     axes: [
-      bottomAxis(l, 'time', { values: decades, space: 1 }),
-      sideAxis(l, 'times counted', { values: counts, space: 1 }),
+      bottomAxis(l, 'time', { values: times, ...onlyPowers }),
+      sideAxis(l, 'times counted', { values: counts, ...onlyPowers }),
     ],
     series: [{}, { paths: () => null, points: { show: false } }],
     hooks: { draw: [bars] },

@@ -1,6 +1,6 @@
 // Stability lobes of the present posture, with the operating point in them and the advised one.
 import type uPlot from 'uplot';
-import { bottomAxis, Chart, plain, sideAxis } from './chart';
+import { bottomAxis, Chart, plain, rightEms, sideAxis } from './chart';
 import { byId, setText } from './dom';
 import { depth, hertz, niceCeil, percent, quantity } from './format';
 import { look, rimmedText } from './look';
@@ -83,7 +83,7 @@ export function lobesPanel(about: About): LobesPanel {
 
   const chart = new Chart(byId('lobes-chart'), (l) => ({
     ...plain,
-    padding: [0.8 * l.rem, l.rem, 0, 0],
+    padding: [0.8 * l.rem, rightEms * l.rem, 0, 0],
     scales: { x: { time: false, range: speedRange }, y: { range: () => [0, top_mm] } },
     axes: [
       bottomAxis(l, 'spindle speed, rpm'),
@@ -148,6 +148,7 @@ function topOf(lobes: Lobes, state: State | null): number {
 /** In words what the picture shows, for ears too. */
 function caption(lobes: Lobes | null, state: State): string {
   if (!lobes) return 'no lobes known for this posture';
+  if (state.rpm === null) return 'spindle speed not known';
   const i = nearest(lobes.rpm, state.rpm);
   const limit = i === null ? undefined : lobes.limit_mm[i];
   const at = `at ${quantity(state.rpm, 0, 'rpm')}`;

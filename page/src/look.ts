@@ -7,6 +7,7 @@ export interface Look {
   muted: string;
   line: string;
   surface: string;
+  ground: string;
   data: string;
   second: string;
   alarm: string;
@@ -24,7 +25,7 @@ export function look(): Look {
   current = {
     rem,
     font: `${Math.round(0.85 * rem)}px ${getComputedStyle(document.body).fontFamily}`,
-    text: colour('text'), muted: colour('muted'), line: colour('line'), surface: colour('surface'),
+    text: colour('text'), muted: colour('muted'), line: colour('line'), surface: colour('surface'), ground: colour('ground'),
     data: colour('data'), second: colour('second'), alarm: colour('alarm'), stable: colour('stable'),
   };
   return current;

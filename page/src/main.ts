@@ -126,6 +126,7 @@ function start(about: About): void {
   }, watchMs);
 
   const frame = (nowMs: number): void => {
+    requestAnimationFrame(frame); // the browser stops calling while the page is hidden
     if (freshState && state && !stale) {
       top.show(state);
       freshState = false;
@@ -137,7 +138,6 @@ function start(about: About): void {
     trend.frame(nowMs);
     log.frame();
     latency.frame();
-    requestAnimationFrame(frame); // the browser stops calling while the page is hidden
   };
 
   const restyle = (): void => {

@@ -1,6 +1,6 @@
 // Spectrum and waterfall over one axis of frequency, with harmonics of spindle and tooth passing and the chatter marked.
 import type uPlot from 'uplot';
-import { bottomAxis, Chart, plain, sideAxis } from './chart';
+import { bottomAxis, Chart, plain, rightEms, sideAxis } from './chart';
 import { byId, setText } from './dom';
 import { hertz, quantity } from './format';
 import { look, rimmedText } from './look';
@@ -79,7 +79,7 @@ export function spectrumPanel(): SpectrumPanel {
 
   const chart = new Chart(byId('spectrum-chart'), (l) => ({
     ...plain,
-    padding: [1.4 * l.rem, l.rem, 0, 0],
+    padding: [1.4 * l.rem, rightEms * l.rem, 0, 0],
     scales: { x: { time: false, range: () => [0, span_hz()] }, y: { range: () => [range.low, range.high] } },
     axes: [
       bottomAxis(l, 'frequency, Hz'),

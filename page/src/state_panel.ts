@@ -47,7 +47,7 @@ export function statePanel(): StatePanel {
       setText(byId('chatter-hz'), fixed(state.chatter_hz, state.chatter_hz !== null && state.chatter_hz < 100 ? 1 : 0));
       setText(byId('chatter-kind'), state.chatter_hz === null ? 'none heard' : chatterKind(state.chatter_kind));
       setText(byId('mode-number'), state.mode_number === null
-        ? '' : `mode ${state.mode_number} of the posture${state.mode_hz === null ? '' : `, ${hertz(state.mode_hz)}`}`);
+        ? '' : `mode ${state.mode_number}${state.mode_hz === null ? '' : `, ${hertz(state.mode_hz)}`}`);
       setText(byId('depth'), depth(state.depth_mm));
       setText(byId('limit'), state.limit_mm === null ? 'limit not known or unbounded' : `limit ${depth(state.limit_mm)}\u00a0mm`);
       setText(byId('margin'), state.margin === null ? '' : `margin ${percent(state.margin, 0, true)}`);

@@ -1,6 +1,6 @@
 // Over time: spindle speed with its limits and what was advised, and the indicator; corrections and onsets marked.
 import type uPlot from 'uplot';
-import { bottomAxis, Chart, plain, sideAxis } from './chart';
+import { bottomAxis, Chart, plain, rightEms, sideAxis } from './chart';
 import { byId } from './dom';
 import { clock } from './format';
 import { look, rimmedText } from './look';
@@ -32,7 +32,8 @@ export function trendPanel(about: About): TrendPanel {
 
   const timeRange = (): [number, number] => {
     const end = points.at(-1)?.t ?? window_s;
-    return [end - kept_s, end];
+    const from = live ? end - kept_s : Math.max(0, end - kept_s);
+    return [from, live ? end : from + Math.min(kept_s, about.duration_s ?? kept_s)];
   };
   const speedRange = (): [number, number] => {
     const known = points.flatMap((p) => (p.rpm ? [p.rpm] : []));
@@ -92,7 +93,7 @@ export function trendPanel(about: About): TrendPanel {
   const times = (_: uPlot, values: number[]): string[] => values.map((t) => clock(t, live, 0));
   const speeds = new Chart(byId('speed-chart'), (l) => ({
     ...plain,
-    padding: [0.6 * l.rem, l.rem, 0, 0],
+    padding: [0.6 * l.rem, rightEms * l.rem, 0, 0],
     scales: { x: { time: false, range: timeRange }, y: { range: speedRange } },
     axes: [
       bottomAxis(l, '', { show: false }),
@@ -104,14 +105,14 @@ export function trendPanel(about: About): TrendPanel {
       { stroke: l.data, width: 2, points: { show: false } },
     ],
     hooks: {
-      drawClear: [(u) => level(u, about.min_rpm, 'lowest', look().muted, true),
-        (u) => level(u, about.max_rpm, 'highest', look().muted, false)],
+      drawClear: [(u) => level(u, about.min_rpm, 'lowest', look().muted, false),
+        (u) => level(u, about.max_rpm, 'highest', look().muted, true)],
       draw: [(u) => drawMarks(u, true)],
     },
   }), [[], [], []]);
   const indicator = new Chart(byId('indicator-chart'), (l) => ({
     ...plain,
-    padding: [0.6 * l.rem, l.rem, 0, 0],
+    padding: [0.6 * l.rem, rightEms * l.rem, 0, 0],
     scales: { x: { time: false, range: timeRange }, y: { range: indicatorRange } },
     axes: [
       bottomAxis(l, live ? 'time of day' : 'time since the first frame', { values: times, space: 6 * l.rem }),

@@ -1,6 +1,6 @@
 // The waterfall: a ring of spectra, one row each, newest on top, that scrolls by the screen's clock between the spectra.
 // Rows are coloured once into an off-screen canvas; a frame copies two pieces of it.
-import { sideEms } from './chart';
+import { rightEms, sideEms } from './chart';
 import { byId } from './dom';
 import { look, rimmedText, waterfallColours } from './look';
 import type { Spectrum } from './protocol';
@@ -24,7 +24,7 @@ export function waterfall(): Waterfall {
   const canvas = byId<HTMLCanvasElement>('waterfall');
   const ctx = canvas.getContext('2d', { alpha: false }) as CanvasRenderingContext2D;
   const ring = document.createElement('canvas');
-  const ringCtx = ring.getContext('2d', { alpha: false }) as CanvasRenderingContext2D;
+  const ringCtx = ring.getContext('2d') as CanvasRenderingContext2D;
   let levels = new Float32Array(0); // dB, a row each; NaN: nothing heard
   let bins = 0;
   let bin_hz = 1;
@@ -52,14 +52,14 @@ export function waterfall(): Waterfall {
     for (let i = 0; i < bins; i++) {
       const level = levels[from + i] as number;
       const index = Math.min(Math.max(Math.round((level - low) * scale), 0), 255);
-      pixels[i] = level === level ? (waterfallColours[index] as number) : 0xff000000;
+      pixels[i] = level === level ? (waterfallColours[index] as number) : 0; // see-through
     }
     ringCtx.putImageData(image, 0, slot(row));
   };
 
   const repaint = (): void => {
     if (!bins) return;
-    ringCtx.fillRect(0, 0, bins, rowsKept);
+    ringCtx.clearRect(0, 0, bins, rowsKept);
     for (let row = Math.max(0, newest - rowsKept); row < newest; row++) paint(row);
     dirty = true;
   };
@@ -76,7 +76,6 @@ export function waterfall(): Waterfall {
     newest = shown = newest_s = 0;
     drawn = -1;
     repaint();
-    ringCtx.fillRect(0, 0, ring.width, ring.height);
   };
 
   const drawAxis = (left: number, height: number): void => {
@@ -130,7 +129,7 @@ export function waterfall(): Waterfall {
       drawn = shown;
       const dpr = devicePixelRatio;
       const left = Math.round(sideEms * look().rem * dpr);
-      const right = Math.round(look().rem * dpr);
+      const right = Math.round(rightEms * look().rem * dpr);
       const width = canvas.width - left - right;
       const rowPx = canvas.height / rowsShown;
       const wide = Math.min(bins, span_hz / bin_hz);
@@ -141,7 +140,7 @@ export function waterfall(): Waterfall {
       ctx.beginPath();
       ctx.rect(left, 0, width, canvas.height);
       ctx.clip();
-      ctx.fillStyle = '#000';
+      ctx.fillStyle = look().ground;
       ctx.fillRect(left, 0, width, canvas.height);
       const upper = rowsKept - top; // rows from the newest to the end of the ring
       ctx.drawImage(ring, 0, top, wide, upper, left, y, columns, upper * rowPx);

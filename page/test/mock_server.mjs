@@ -33,6 +33,8 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
     send(client, 'state', { ...cut.stateAt(inCut, { live: !recording }), ...held, t });
   };
 
+  const sendCorrection = (client, c, t) => send(client, 'correction', { ...c, mode: recording ? 'shadow' : 'active', t });
+
   const tick = (client) => {
     const { inCut, t } = timeOf(client);
     if (silent) return;
@@ -46,7 +48,7 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
     send(client, 'spectrum', { ...cut.spectrumAt(inCut), t });
     const due = (from) => client.last !== null && from > client.last && from <= inCut;
     for (const e of cut.events) if (due(e.t)) send(client, 'event', { ...e, t: t - (inCut - e.t) });
-    for (const c of cut.corrections) if (due(c.t)) send(client, 'correction', { ...c, t: t - (inCut - c.t) });
+    for (const c of cut.corrections) if (due(c.t)) sendCorrection(client, c, t - (inCut - c.t));
     if (client.ticks++ % 20 === 0) {
       send(client, 'lobes', { ...cut.lobesAt(inCut), t });
       send(client, 'health', { ...cut.healthAt(inCut), t });
@@ -80,7 +82,7 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
       const { inCut, t } = timeOf(client);
       if (!silent) { // the last events and corrections, so that the page is filled at once
         for (const e of cut.events) if (e.t <= inCut) send(client, 'event', { ...e, t: t - (inCut - e.t) });
-        for (const c of cut.corrections) if (c.t <= inCut) send(client, 'correction', { ...c, t: t - (inCut - c.t) });
+        for (const c of cut.corrections) if (c.t <= inCut) sendCorrection(client, c, t - (inCut - c.t));
       }
       clients.add(client);
       request.on('close', () => clients.delete(client));
