@@ -4,7 +4,7 @@ import { kinds, readMessage, type Message } from './protocol';
 
 const firstRetryMs = 500;
 const lastRetryMs = 2000;
-const silenceMs = 5000; // a half-open connection says nothing, neither data nor an error
+const silenceMs = 3000; // a half-open connection says nothing, neither data nor an error
 
 export class Connection {
   /** When something was last heard, on the clock of performance.now(). */

@@ -72,7 +72,7 @@ export function advice(state: State): string {
     case 'spindle speed':
       return `→ advised ${quantity(state.advised_rpm, 0, 'rpm')}`;
     case 'spindle speed variation':
-      return `→ advised variation ±${percent(state.variation_ratio)}, ${quantity(state.variation_hz, 1, 'Hz')}`;
+      return `→ vary ±${percent(state.variation_ratio)}, ${quantity(state.variation_hz, 1, 'Hz')}`;
     case 'feed direction':
       return `→ advised feed direction ${quantity(state.advised_direction_deg, 0, '°')}`;
     case 'feed override':

@@ -8,6 +8,7 @@ export interface Face {
 }
 
 const circle = 'M50 4a46 46 0 1 0 .01 0z';
+const pill = 'M26 28H74a22 22 0 0 1 0 44H26a22 22 0 0 1 0-44z';
 const triangle = 'M50 5L97 92H3z';
 const octagon = 'M31 4H69L96 31V69L69 96H31L4 69V31z';
 const arrow = 'M4 22H52V4L97 50L52 96V78H4z';
@@ -22,7 +23,7 @@ const faces: Record<string, Face> = {
   correcting: { outline: arrow, sign: 'M20 50H76M58 32L76 50L58 68', loud: true, text: 'a correction is under way' },
   'cannot tell': { outline: diamond, sign: query, loud: false, text: 'the signals do not allow a judgement' },
   fault: { outline: square, sign: 'M28 28L72 72M72 28L28 72', loud: true, text: 'something is broken' },
-  'not cutting': { outline: circle, sign: 'M28 50H72', loud: false, text: 'the tool is in the air' },
+  'not cutting': { outline: pill, sign: 'M32 50H68', loud: false, text: 'the tool is in the air' },
   'no daemon': { outline: circle, sign: 'M20 80L80 20', loud: false, text: 'nothing is heard of stillcutd' },
   'no data': { outline: square, sign: 'M26 50v1M50 50v1M74 50v1', loud: false, text: 'the page hears nothing from its server' },
 };

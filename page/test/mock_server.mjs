@@ -119,7 +119,7 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
     stop() {
       clearInterval(timer);
       server.closeAllConnections();
-      return new Promise((resolve) => server.close(resolve));
+      return new Promise((resolve) => server.close(() => resolve())); // a second call finds it closed
     },
   };
 }
