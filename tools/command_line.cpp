@@ -24,6 +24,7 @@ int run_stillcut(int argc, char** argv) {
   add_directions_command(app);
   add_patterns_command(app);
   add_doctor_command(app);
+  add_export_command(app);
   add_fit_command(app);
   add_hil_command(app);
   add_lobes_command(app);

@@ -11,6 +11,7 @@ void add_coefficients_command(CLI::App& app);
 void add_directions_command(CLI::App& app);
 void add_patterns_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_hil_command(CLI::App& app);
 void add_lobes_command(CLI::App& app);
