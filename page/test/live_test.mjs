@@ -90,6 +90,8 @@ test('ScrollsInStepsWhereMotionIsToBeReduced', { skip: Boolean(given) && 'needs 
 test('FollowsEachStateAndTellsItByWordAndShape', { skip: Boolean(given) && 'needs the mock' }, async () => {
   page ??= await open(browser, url);
   const shapes = new Map();
+  server.hold({ state: 'unheard of' }); // not what the first of the following is
+  await waitForText(page, 'state-word', 'Unheard of');
   for (const state of ['stable', 'watch', 'chatter', 'correcting', 'cannot tell', 'fault', 'not cutting', 'no daemon']) {
     server.hold({ state, reason: `Reason of ${state}.` });
     await waitForText(page, 'state-word', state.charAt(0).toUpperCase() + state.slice(1));

@@ -1,6 +1,7 @@
+import { readFileSync } from 'node:fs';
 import { defineConfig } from 'vite';
 
-// `npm run dev` shows the mock server's stream; `vite build --outDir` is given by CMake.
+// `npm run dev` shows the mock server's stream; the build's folder is given by CMake.
 export default defineConfig({
   base: './', // the page may stand behind a proxy, below any path
   server: { proxy: { '/api': 'http://localhost:8099' } },
@@ -10,4 +11,10 @@ export default defineConfig({
     modulePreload: false,
     emptyOutDir: true,
   },
+  plugins: [{
+    name: 'licence', // of what is bundled, to go with it
+    generateBundle() {
+      this.emitFile({ type: 'asset', fileName: 'uplot-licence.txt', source: readFileSync('node_modules/uplot/LICENSE') });
+    },
+  }],
 });
