@@ -219,7 +219,7 @@ void draw_figure(const Figure& figure, Canvas& canvas) {
   double top = kTop;
   if (!figure.title.empty()) canvas.text(kLeft, top += 14, figure.title, {.size = kLarge, .bold = true});
   if (!figure.subtitle.empty()) canvas.text(kLeft, top += 24, figure.subtitle, {.size = kMiddle, .color = kFrame});
-  top += 10;
+  top += figure.title.empty() ? -kBetween : 10;  // nothing for the panels to stand off from
 
   double shares = 0.0;
   bool with_scale = false;

@@ -51,6 +51,8 @@ struct ReportEpisode {                 // of chatter
   double end_speed_rpm = kNaN, end_depth_mm = kNaN;
   double level_before = kNaN;  // m/s² rms, the loudest 50 ms of it
   double level_after = kNaN;   // mean of half a second from 0.1 s after its end; NaN: the tool was not in the cut
+  double again_s = kNaN;       // onset of the next one in the same cut, where it came at once
+  int asked_before = -1;       // index of the episode whose correction was still asked for at its onset
   int cut = -1;                // index of the cut it belongs to
   int diagram = -1;            // of the lobes
   std::vector<ReportCorrection> corrections;
@@ -104,6 +106,7 @@ struct Report {
   double timeline_step_s = 0.0;
   std::vector<ReportCut> cuts;
   std::vector<ReportEpisode> episodes;
+  std::int64_t forced_vibrations = 0;  // told of, no chatter
   std::vector<ReportLobes> lobes;
   std::vector<ReportSensor> sensors;
   std::vector<ReportFault> faults;

@@ -34,6 +34,10 @@ class ReportCollector {
     double counted_s = 0.0, counted_samples = 0.0;
     int block = 0;
   };
+  struct Asked {  // the correction that is asked for now; episode -1: none
+    int episode = -1;
+    std::size_t correction = 0;
+  };
   struct After {  // levels that follow an episode
     int episode = -1;
     double from_s = 0.0, sum = 0.0;
@@ -67,7 +71,7 @@ class ReportCollector {
   std::vector<SensorSpan> spans_;
   std::vector<int> open_episodes_;
   std::vector<After> after_;
-  ReportCorrection* asked_ = nullptr;  // by the event that was told last; its messages follow
+  Asked asked_;
   std::map<std::string, std::size_t> fault_places_;
   Level level_;
   double newest_level_ = kNaN;

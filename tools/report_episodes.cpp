@@ -8,6 +8,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kAfterFrom_s = 0.1;  // the spindle's and the tool's motion has died out
+constexpr double kAtOnce_s = 1.0;     // chatter that comes back so soon had not ended
 constexpr std::size_t kMostFaultKinds = 64;
 
 }  // namespace
@@ -33,7 +34,7 @@ void ReportCollector::hear_event(const Event& event, const Core& core) {
       end_episode(event, core);
       break;
     case EventType::correction: {
-      asked_ = nullptr;
+      asked_ = {};
       if (report_.episodes.empty()) break;
       const std::size_t episode =
           open_episodes_.empty() ? report_.episodes.size() - 1 : static_cast<std::size_t>(open_episodes_.back());
@@ -43,13 +44,14 @@ void ReportCollector::hear_event(const Event& event, const Core& core) {
                              .from_rpm = rad_s_to_rpm(core.view().speed),
                              .target_rpm = event.spindle_speed_rpm,
                              .refusal = {}});
-      asked_ = &corrections.back();
+      asked_ = {static_cast<int>(episode), corrections.size() - 1};
       break;
     }
     case EventType::fault:
       note_fault(event);
       break;
     case EventType::forced_vibration:
+      ++report_.forced_vibrations;
       break;
   }
 }
@@ -75,13 +77,15 @@ void ReportCollector::begin_episode(const Event& event, const Core& core) {
   if (const LobeDiagram* lobes = core.lobes())
     episode.margin = margin_at(*lobes, rpm_to_rad_s(episode.speed_rpm), episode.depth_mm * 1e-3);
   episode.diagram = lobes_in_use(core);
+  episode.asked_before = asked_.episode;
   if (ReportCut* cut = open_cut()) {
     ++cut->episodes;
     cut->diagram = episode.diagram;
     episode.cut = static_cast<int>(report_.cuts.size()) - 1;
+    for (ReportEpisode& earlier : report_.episodes)
+      if (earlier.cut == episode.cut && episode.onset_s - earlier.end_s < kAtOnce_s) earlier.again_s = episode.onset_s;
   }
   report_.episodes.push_back(std::move(episode));
-  asked_ = nullptr;  // the episodes may have moved
   open_episodes_.push_back(number);
   pictures_.begin(number, report_.episodes.back().onset_s);
 }
@@ -105,17 +109,18 @@ void ReportCollector::end_episode(const Event& event, const Core& core) {
 
 // The messages that follow the event of a correction ask for it, until another event or its release.
 void ReportCollector::hear_correction(const Correction& correction) {
-  if (correction.kind == CorrectionKind::release) asked_ = nullptr;
-  if (asked_ == nullptr) return;
-  if (asked_->first_sequence == 0) {
-    asked_->first_sequence = correction.sequence;
-    asked_->kind = correction.kind;
-    asked_->mode = correction.mode;
-    asked_->margin_before = correction.predicted_margin_before;
-    asked_->margin_after = correction.predicted_margin_after;
-    asked_->confidence_percent = correction.confidence_percent;
+  if (correction.kind == CorrectionKind::release) asked_ = {};
+  if (asked_.episode < 0) return;
+  ReportCorrection& asked = report_.episodes[static_cast<std::size_t>(asked_.episode)].corrections[asked_.correction];
+  if (asked.first_sequence == 0) {
+    asked.first_sequence = correction.sequence;
+    asked.kind = correction.kind;
+    asked.mode = correction.mode;
+    asked.margin_before = correction.predicted_margin_before;
+    asked.margin_after = correction.predicted_margin_after;
+    asked.confidence_percent = correction.confidence_percent;
   }
-  asked_->last_sequence = correction.sequence;
+  asked.last_sequence = correction.sequence;
 }
 
 void ReportCollector::hear_robot(const RobotMessage& message) {

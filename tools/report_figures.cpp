@@ -172,7 +172,9 @@ plot::Figure timeline_figure(const Report& report) {
   state.limits.push_back({1.0, "alarm limit", plot::kVermilion});
   Panel level;
   level.title = "Vibration at the tool, loudest 50 ms";
-  level.y = {.label = "m/s² rms", .min = 0.0};
+  double loudest = 0.0;
+  for (const TimelinePoint& point : report.timeline) loudest = std::fmax(loudest, point.level);
+  level.y = {.label = "m/s² rms", .min = 0.0, .max = loudest > 0.0 ? 1.05 * loudest : 1.0};
   level.bands = state.bands;
   for (Band& band : level.bands) band.label.clear();
   level.lines.push_back(line_of(report, plot::kInk, 1.0, [](const TimelinePoint& p) { return p.level; }));

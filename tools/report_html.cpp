@@ -1,6 +1,7 @@
 #include "tools/report_html.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 
 namespace stillcut::html {
@@ -19,10 +20,10 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-// A cell that begins with a digit or is a dash alone is a number.
+// A cell of digits and what goes with them, or a dash alone, is a number.
 bool is_number(const std::string& text) {
-  const char first = text.empty() ? ' ' : text[0];
-  return (first >= '0' && first <= '9') || first == '-' || first == '+' || text == "–";
+  return text == "–" || (!text.empty() && text.find("→") == std::string::npos &&
+                         std::none_of(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }));
 }
 
 }  // namespace
@@ -114,12 +115,12 @@ p { margin: 6px 0; max-width: 80ch; }
 dl { display: flex; flex-wrap: wrap; gap: 10px 28px; margin: 8px 0; }
 dt { color: var(--soft); font-size: 12.5px; }
 dd { margin: 0; font-variant-numeric: tabular-nums; }
-img { display: block; width: 100%; height: auto; background: #ffffff; border-radius: 6px; margin: 10px 0; }
-.wide { overflow-x: auto; }
+img { display: block; width: 100%; height: auto; background: #ffffff; border-radius: 6px; margin: 10px 0 6px; }
+.wide { overflow-x: auto; margin: 8px -9px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 14px; }
-th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 2px solid var(--line); padding: 5px 10px 5px 0;
+th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 2px solid var(--line); padding: 5px 9px;
   vertical-align: bottom; }
-td { border-bottom: 1px solid var(--line); padding: 5px 10px 5px 0; vertical-align: top; }
+td { border-bottom: 1px solid var(--line); padding: 5px 9px; vertical-align: top; }
 .n { text-align: right; white-space: nowrap; }
 tr.chatter td { color: var(--bad); font-weight: 600; }
 footer { margin-top: 40px; color: var(--soft); font-size: 13px; border-top: 1px solid var(--line); padding-top: 12px; }

@@ -33,6 +33,7 @@ Json episode_json(const ReportEpisode& episode) {
   return {{"onset_s", episode.onset_s},
           {"end_s", known(episode.end_s)},
           {"end", end_of(episode)},
+          {"came_back_s", known(episode.again_s)},
           {"kind", kind_text(episode.kind)},
           {"frequency_hz", known(episode.frequency_hz)},
           {"indicator_max", known(episode.indicator)},
@@ -97,6 +98,7 @@ nlohmann::ordered_json report_json(const Report& report) {
             {"frames_out_of_order", report.frames_out_of_order},
             {"inputs_not_recorded", report.inputs_lost}};
   for (std::size_t s = 0; s < kNames.size(); ++s) json["time_s"][kNames[s]] = report.state_s[s];
+  json["forced_vibrations"] = report.forced_vibrations;
   json["cuts"] = list_of(report.cuts, cut_json);
   json["episodes"] = list_of(report.episodes, episode_json);
   json["sensors"] = list_of(report.sensors, sensor_json);

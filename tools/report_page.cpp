@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "tools/report_figures.hpp"
 #include "tools/report_html.hpp"
@@ -41,15 +40,14 @@ void write_head(const Report& report, std::ostream& out) {
   const char* const gravity = verdict.gravity == Gravity::good      ? "good"
                               : verdict.gravity == Gravity::notable ? "notable"
                                                                     : "bad";
-  const std::string name = std::filesystem::path(report.recording).filename().string();
   out << "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta "
          "charset=\"utf-8\"/>\n"
       << "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Cutting report, "
       << escaped(utc_text(report.origin_ns)) << "</title>\n<style>" << html::style_sheet()
       << "</style>\n</head>\n<body>\n<main>\n<h1>Cutting report</h1>\n<p class=\"soft\">"
-      << escaped(utc_text(report.origin_ns)) << ", " << duration_text(report.played_s) << ", recording "
-      << escaped(name.empty() ? report.recording : name) << "</p>\n<div class=\"card verdict " << gravity << "\"><p>"
-      << escaped(verdict.text) << "</p></div>\n";
+      << escaped(utc_text(report.origin_ns)) << ", " << duration_text(report.played_s) << ", from "
+      << escaped(report.recording) << "</p>\n<div class=\"card verdict " << gravity << "\"><p>" << escaped(verdict.text)
+      << "</p></div>\n";
   out << html::facts({{"Cell", report.cell},
                       {"Tool", report.tool},
                       {"Material", report.material},
@@ -126,7 +124,7 @@ std::string asked_text(const ReportCorrection& correction) {
 
 void write_episode(const ReportEpisode& episode, std::size_t number, std::ostream& out) {
   out << "<div class=\"card\">\n<h3>Episode " << number + 1 << ": " << kind_text(episode.kind) << " chatter at "
-      << shown(episode.frequency_hz, 0) << " Hz, " << shown(episode.onset_s, 2) << " s</h3>\n<p>"
+      << shown(episode.frequency_hz, 0) << " Hz, " << shown(episode.onset_s, 2) << " s</h3>\n<p>It "
       << escaped(end_of(episode)) << ".</p>\n";
   const double change = episode.level_after / episode.level_before;
   out << html::facts(
@@ -138,6 +136,8 @@ void write_episode(const ReportEpisode& episode, std::size_t number, std::ostrea
        {"Vibration while it chattered", shown(episode.level_before, 1) + " m/s² rms"},
        {"After it",
         std::isnan(change) ? "" : shown(episode.level_after, 1) + " m/s² rms (" + shown(100.0 * change, 0) + " %)"}});
+  if (episode.asked_before >= 0)
+    out << "<p>At its onset the correction of episode " << episode.asked_before + 1 << " was still asked for.</p>\n";
   if (!episode.corrections.empty()) {
     html::Table table{{"correction at [s]", "asked for", "answer", "predicted margin", "confidence [%]"}, {}, {}};
     for (const ReportCorrection& correction : episode.corrections)
@@ -152,15 +152,21 @@ void write_episode(const ReportEpisode& episode, std::size_t number, std::ostrea
   out << "</div>\n";
 }
 
+std::string table_answer(const ReportEpisode& episode) {
+  if (!episode.corrections.empty()) return answer_to(episode.corrections.back());
+  return episode.asked_before < 0 ? "none" : "still that of " + std::to_string(episode.asked_before + 1);
+}
+
 void write_episodes(const Report& report, std::ostream& out) {
   out << "<h2>Chatter</h2>\n";
-  if (report.episodes.empty()) {
-    out << "<p>None.</p>\n";
-    return;
-  }
+  if (report.episodes.empty()) out << "<p>None.</p>\n";
+  if (report.forced_vibrations > 0)
+    out << "<p>Forced vibration, loud at multiples of the spindle's turns and no chatter, was told "
+        << report.forced_vibrations << (report.forced_vibrations == 1 ? " time" : " times") << ".</p>\n";
+  if (report.episodes.empty()) return;
   std::size_t pictures = 0;
   html::Table table{{"#", "onset [s]", "length [s]", "kind", "frequency [Hz]", "speed [rpm]", "indicator, max",
-                     "before [m/s² rms]", "after [m/s² rms]", "correction", "end"},
+                     "before", "after", "correction", "end"},
                     {},
                     {}};
   for (const std::size_t i : worst(report.episodes)) {
@@ -169,11 +175,11 @@ void write_episodes(const Report& report, std::ostream& out) {
     table.rows.push_back({std::to_string(i + 1), shown(episode.onset_s, 2), span_text(episode.onset_s, episode.end_s),
                           kind_text(episode.kind), shown(episode.frequency_hz, 0), shown(episode.speed_rpm, 0),
                           shown(episode.indicator, 2), shown(episode.level_before, 1), shown(episode.level_after, 1),
-                          episode.corrections.empty() ? "none" : answer_to(episode.corrections.back()),
-                          end_of(episode)});
+                          table_answer(episode), short_end_of(episode)});
   }
   out << "<div class=\"card\">\n" << html::table(table) << left_out(report.episodes.size(), "episodes");
-  out << "<p class=\"soft\">Before: the loudest 50 ms of the episode. After: the mean of half a second from 0.1 s "
+  out << "<p class=\"soft\">Before: rms vibration in m/s², the loudest 50 ms of the episode. After: the mean of half a "
+         "second from 0.1 s "
          "after its end, where the "
          "tool was still in the cut."
       << (pictures < report.episodes.size() ? " Pictures are of the " + std::to_string(pictures) +
@@ -209,8 +215,8 @@ void write_health(const Report& report, std::ostream& out) {
                       {"Bad", std::to_string(report.frames_bad)},
                       {"Dropped, stamp went back", std::to_string(report.frames_out_of_order)},
                       {"Not recorded", std::to_string(report.inputs_lost)}});
-  html::Table sensors{{"accelerometer", "samples", "missing", "gaps", "longest gap [ms]", "at the end of the range",
-                       "no number", "rate, nominal [Hz]", "rate, measured [Hz]", "error [ppm]"},
+  html::Table sensors{{"accelerometer", "samples", "missing", "gaps", "longest [ms]", "saturated", "no number",
+                       "rate [Hz]", "measured [Hz]", "error [ppm]"},
                       {},
                       {}};
   for (std::size_t s = 0; s < report.sensors.size(); ++s) {

@@ -21,7 +21,8 @@ std::string count_of(std::size_t number, const char* singular, const char* plura
 }
 
 bool ended_in_cut(const ReportEpisode& episode) {
-  return std::isfinite(episode.end_s) && episode.end_note.find("cut exit") == std::string::npos;
+  return std::isfinite(episode.end_s) && std::isnan(episode.again_s) &&
+         episode.end_note.find("cut exit") == std::string::npos;
 }
 
 // What the corrections did, for the sentence of the verdict.
@@ -102,10 +103,18 @@ std::string answer_to(const ReportCorrection& correction) {
 
 std::string end_of(const ReportEpisode& episode) {
   if (std::isnan(episode.end_s)) return "went on to the end of the recording";
+  if (std::isfinite(episode.again_s))
+    return "came back " + shown(episode.again_s - episode.end_s, 2) + " s after its end";
   if (!ended_in_cut(episode)) return "ended when the tool left the cut";
   if (episode.corrections.empty()) return "ended by itself in the cut";
   return "ended in the cut, " + shown(episode.end_s - episode.corrections.front().time_s, 2) + " s after " +
          (episode.corrections.size() > 1 ? "the first correction" : "the correction");
+}
+
+std::string short_end_of(const ReportEpisode& episode) {
+  if (std::isnan(episode.end_s)) return "goes on";
+  if (std::isfinite(episode.again_s)) return "came back";
+  return ended_in_cut(episode) ? "in the cut" : "tool left";
 }
 
 ReportVerdict verdict_of(const Report& report) {

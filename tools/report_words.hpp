@@ -20,8 +20,10 @@ struct ReportVerdict {
 // "followed", "shown only (shadow)", "refused: busy", "not answered", "none known".
 [[nodiscard]] std::string answer_to(const ReportCorrection& correction);
 
-// "ended 0.41 s after the correction", "ended when the tool left the cut", "went on to the end of the recording".
+// "ended in the cut, 0.41 s after the correction", "ended when the tool left the cut", "came back 0.04 s later", ...
 [[nodiscard]] std::string end_of(const ReportEpisode& episode);
+// The same in a word or two, for a table.
+[[nodiscard]] std::string short_end_of(const ReportEpisode& episode);
 
 [[nodiscard]] const char* kind_text(ChatterKind kind);
 [[nodiscard]] const char* mode_text(RuntimeMode mode);
