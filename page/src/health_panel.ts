@@ -29,11 +29,14 @@ export function healthPanel(): { show(health: Health): void } {
         doubts = health.doubts.join();
         byId('doubts').replaceChildren(...health.doubts.map((d) => make('li', 'marked', `⚠\u00a0${d}`)));
       }
-      const lost = [...health.sensors.map((s) => s.frames_lost), ...health.hops.map((h) => h.lost)]
-        .reduce<number>((sum, n) => sum + (n ?? 0), 0);
-      setText(byId('health-summary'), health.doubts.length || lost
-        ? [health.doubts.length ? 'signals in doubt' : '', lost ? `${fixed(lost, 0)} lost on the way` : ''].filter(Boolean).join(', ')
-        : 'nothing lost, no doubts');
+      const sum = (counts: (number | null)[]): number => counts.reduce<number>((total, n) => total + (n ?? 0), 0);
+      const missing = sum(sensors.map((s) => s.frames_lost));
+      const lost = sum(health.hops.map((h) => h.lost));
+      setText(byId('health-summary'), [
+        health.doubts.length ? 'signals in doubt' : '',
+        missing ? `${fixed(missing, 0)} frames missing` : '',
+        lost ? `${fixed(lost, 0)} lost on the way` : '',
+      ].filter(Boolean).join(', ') || 'nothing lost, no doubts');
     },
   };
 }

@@ -119,7 +119,7 @@ export function spectrumPanel(): SpectrumPanel {
         sensor.hidden = sensor.options.length < 2;
       }
       const { bin_hz, low_db, step_db } = spectrum;
-      if (name !== sensor.value || bin_hz === null || low_db === null || step_db === null) return;
+      if (name !== sensor.value || !bin_hz || bin_hz < 0 || !spectrum.levels.length || low_db === null || step_db === null) return;
       if (frequencies.length !== spectrum.levels.length || frequencies[1] !== bin_hz) {
         frequencies = Array.from(spectrum.levels, (_, k) => k * bin_hz);
         fall.setSpan(span_hz());

@@ -137,7 +137,8 @@ test('RefusesWhatItCannotReadAndGoesOn', { skip: Boolean(given) && 'needs the mo
   server.send('lobes', { t, rpm: [1, null, 'x'], limit_mm: 'none', chatter_hz: null, modes: [null, 7] });
   server.send('spectrum', { t, sensor: 0, bin_hz: 0, low_db: null, step_db: 1, levels: '' });
   server.send('health', { t, sensors: [{}], hops: [3], doubts: [null] });
-  server.send('latency', { t, stages: [{}], histograms: [{ stage: 'x', first_us: 0, per_octave: 0, counts: [1] }, {}] });
+  server.send('spectrum', { t, sensor: 0, bin_hz: -1, low_db: -80, step_db: 1, levels: 'AAAA' });
+  server.send('latency', { t, stages: [{}], histograms: [{ stage: 'x', first_us: 0, per_octave: 4, counts: [1] }, { stage: 'y', first_us: 1, per_octave: 0, counts: [1] }, {}] });
   server.send('correction', { t, limited_by: null });
   server.hold({ rpm: 'fast', limited_by: 'all', state: 'stable', reason: '<b id="injected">words</b><img src=x onerror=alert(1)>' });
   await waitForText(page, 'rpm', '–');
