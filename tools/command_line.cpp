@@ -33,6 +33,8 @@ int run_stillcut(int argc, char** argv) {
   add_plant_command(app);
   add_refine_command(app);
   add_replay_command(app);
+  add_report_command(app);
+  add_scope_command(app);
   add_simulate_command(app);
   add_stability_command(app);
   add_surface_command(app);

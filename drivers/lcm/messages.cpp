@@ -103,15 +103,6 @@ bool count_fits(std::span<const std::uint8_t> bytes) {
   return count <= RobotPath::kMaxPoints && bytes.size() == kFingerprint + kTime + kCount + count * kPoint;
 }
 
-// Likewise of stages.
-bool stages_fit(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t kFingerprint = 8, kTimes = 5 * 8 + 1, kCount = 4, kMostStages = 64;
-  if (bytes.size() < kFingerprint + kTimes + kCount) return false;
-  std::size_t count = 0;
-  for (const std::uint8_t byte : bytes.subspan(kFingerprint + kTimes, kCount)) count = count << 8 | byte;
-  return count <= kMostStages;
-}
-
 const char* reason_to_refuse(const correction_ack_t& m) {
   if (m.sequence < 0) return "sequence is negative";
   if (m.accepted != 0 && m.accepted != 1) return "accepted is neither 0 nor 1";
@@ -318,16 +309,6 @@ Received<Status> decode_status(std::span<const std::uint8_t> bytes) {
   if (m.mode < 0 || m.mode > 2) return refused<Status>("mode is not 0, 1 or 2");
   return {Status{m.utime * kNsPerUs, static_cast<State>(m.state), static_cast<RuntimeMode>(m.mode), m.spindle_speed_rpm,
                  m.indicator, m.margin, m.chatter_frequency_hz, m.frames, m.frames_lost, m.lobes_utime * kNsPerUs}};
-}
-
-Received<LoopTimesReport> decode_loop_times(std::span<const std::uint8_t> bytes) {
-  loop_times_t m{};
-  if (!stages_fit(bytes) || !from_bytes(bytes, m)) return refused<LoopTimesReport>(kWrongType);
-  if (!is_time(m.utime)) return refused<LoopTimesReport>(kBadTime);
-  LoopTimesReport report{m.utime * kNsPerUs, m.ticks, m.overruns, m.skipped, m.times_out, m.in_time == 1, {}};
-  for (std::size_t i = 0; i < m.stage.size(); ++i)
-    report.stages.push_back({m.stage[i], m.count[i], m.p50_us[i], m.p99_us[i], m.p999_us[i], m.max_us[i]});
-  return {report};
 }
 
 }  // namespace stillcut

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -52,18 +51,5 @@ Received<CorrectionAck> decode_correction_ack(std::span<const std::uint8_t> byte
 Received<Correction> decode_correction(std::span<const std::uint8_t> bytes);
 Received<Event> decode_event(std::span<const std::uint8_t> bytes);
 Received<Status> decode_status(std::span<const std::uint8_t> bytes);
-
-// Where the loop's time went, as it was published on STILLCUT_LATENCY.
-struct StageLatency {
-  std::string stage;
-  std::int64_t count = 0;
-  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-};
-struct LoopTimesReport {
-  std::int64_t stamp_ns = 0, ticks = 0, overruns = 0, skipped = 0, times_out = 0;
-  bool in_time = true;
-  std::vector<StageLatency> stages;
-};
-Received<LoopTimesReport> decode_loop_times(std::span<const std::uint8_t> bytes);
 
 }  // namespace stillcut
