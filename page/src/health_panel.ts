@@ -12,6 +12,7 @@ export function healthPanel(): { show(health: Health): void } {
   let doubts = '';
   return {
     show(health) {
+      byId('sensors').closest('.panel')?.classList.remove('empty');
       const { sensors } = health;
       const off = (s: Health['sensors'][number]): boolean =>
         Math.abs(s.rate_error_percent ?? 0) > rateErrorMarked_percent || s.rate_hz === 0;

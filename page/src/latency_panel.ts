@@ -105,6 +105,7 @@ export function latencyPanel(): LatencyPanel {
     frame() {
       if (!fresh || !latest) return;
       fresh = false;
+      byId('stages').closest('.panel')?.classList.remove('empty');
       const names = latest.histograms.map((h) => h.stage);
       if (names.join() !== [...choice.options].map((o) => o.value).join()) {
         const kept = choice.value;

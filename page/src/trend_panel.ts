@@ -90,7 +90,11 @@ export function trendPanel(about: About): TrendPanel {
     ctx.restore();
   };
 
-  const times = (_: uPlot, values: number[]): string[] => values.map((t) => clock(t, live, 0));
+  // No label so far to the right that it would be cut off.
+  const times = (_: uPlot, values: number[]): string[] => {
+    const [from, to] = timeRange();
+    return values.map((t) => (live && t > to - 0.04 * (to - from) ? '' : clock(t, live, 0)));
+  };
   const speeds = new Chart(byId('speed-chart'), (l) => ({
     ...plain,
     padding: [0.6 * l.rem, rightEms * l.rem, 0, 0],

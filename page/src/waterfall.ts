@@ -89,6 +89,14 @@ export function waterfall(): Waterfall {
     }
   };
 
+  const drawEmpty = (): void => {
+    ctx.fillStyle = look().ground;
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    drawAxis(Math.round(sideEms * look().rem * devicePixelRatio), canvas.height);
+    ctx.fillRect(canvas.width - Math.round(rightEms * look().rem * devicePixelRatio), 0, canvas.width, canvas.height);
+    dirty = false;
+  };
+
   return {
     add(spectrum, speed) {
       const { bin_hz: hz, low_db, step_db, levels: data } = spectrum;
@@ -117,7 +125,10 @@ export function waterfall(): Waterfall {
     frame(nowMs, smooth) {
       const dt = Math.min((nowMs - lastMs) / 1000, 0.1);
       lastMs = nowMs;
-      if (!bins) return;
+      if (!bins) {
+        if (dirty) drawEmpty();
+        return;
+      }
       if (smooth) {
         shown += rate_hz * dt; // the flow, and a gentle pull to where it should be
         shown += (newest - behindRows - shown) * Math.min(1, 2 * dt);
