@@ -25,7 +25,8 @@ export function healthPanel(): { show(health: Health): void } {
         ['samples saturated', ...sensors.map((s) => lossy(s.saturated))],
         ['samples not finite', ...sensors.map((s) => lossy(s.not_finite))],
       ]);
-      fillRows(byId('hops'), health.hops.map((h) => [h.hop, lossy(h.lost)]));
+      const lossyFirst = [...health.hops].sort((a, b) => Number(Boolean(b.lost)) - Number(Boolean(a.lost)));
+      fillRows(byId('hops'), lossyFirst.map((h) => [h.hop, lossy(h.lost)]));
       if (doubts !== health.doubts.join()) {
         doubts = health.doubts.join();
         byId('doubts').replaceChildren(...health.doubts.map((d) => make('li', 'marked', `⚠\u00a0${d}`)));

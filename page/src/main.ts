@@ -36,6 +36,7 @@ function start(about: About): void {
   const log = logPanel(about);
   const health = healthPanel();
   const latency = latencyPanel();
+  if (!live) setText(byId('latency-summary'), 'none: no loop runs here');
   const calm = matchMedia('(prefers-reduced-motion: reduce)');
   let state: State | null = null;
   let freshState = false;
@@ -51,10 +52,9 @@ function start(about: About): void {
         lobes.setState(state);
         spectrum.setChatter(state.chatter_hz);
         trend.add(state, speed());
-        player?.moved(state.t);
         break;
       case 'spectrum':
-        spectrum.show(message.value, speed());
+        spectrum.show(message.value);
         break;
       case 'lobes':
         lobes.show(message.value);
@@ -104,6 +104,7 @@ function start(about: About): void {
   if (!live) {
     player = makePlayer(about, (cleared) => {
       if (cleared) for (const panel of [spectrum, lobes, trend, log]) panel.reset();
+      if (cleared) freshState = false; // of the place that was left
       if (cleared && player && !player.playing) peek();
       else listen();
     });
@@ -131,6 +132,7 @@ function start(about: About): void {
     requestAnimationFrame(frame); // the browser stops calling while the page is hidden
     if (freshState && state && !stale) {
       top.show(state);
+      player?.moved(state.t);
       freshState = false;
     } else if (freshState) {
       watch(); // heard again

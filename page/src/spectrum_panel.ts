@@ -8,7 +8,7 @@ import type { Spectrum } from './protocol';
 import { waterfall } from './waterfall';
 
 export interface SpectrumPanel {
-  show(spectrum: Spectrum, speed: number): void;
+  show(spectrum: Spectrum): void;
   setChatter(hz: number | null): void;
   frame(nowMs: number, smooth: boolean): void;
   reset(): void;
@@ -112,7 +112,7 @@ export function spectrumPanel(): SpectrumPanel {
   new ResizeObserver(() => fall.resize()).observe(byId('waterfall'));
 
   return {
-    show(spectrum, speed) {
+    show(spectrum) {
       const name = String(spectrum.sensor ?? 0);
       if (![...sensor.options].some((o) => o.value === name)) {
         sensor.add(new Option(`sensor ${Number(name) + 1}`, name));
@@ -127,7 +127,7 @@ export function spectrumPanel(): SpectrumPanel {
       latest = spectrum;
       fresh = true;
       widen(Float32Array.from(spectrum.levels, (byte) => low_db + step_db * byte));
-      fall.add(spectrum, speed);
+      fall.add(spectrum);
     },
 
     setChatter(hz) {
