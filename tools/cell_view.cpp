@@ -38,6 +38,13 @@ bool begins_something(const Correction& correction, const Correction& before) {
          std::abs(correction.speed_variation_ratio - before.speed_variation_ratio) > 1e-3;
 }
 
+// What the controller is asked for.
+std::string asked_sentence(const Correction& correction) {
+  if (correction.kind == CorrectionKind::spindle_speed)
+    return sentence("spindle speed to %.0f rpm", correction.spindle_speed_target_rpm);
+  return std::string(text_of(correction.reason));
+}
+
 std::string depth_sentence(const MonitorReport& monitor) {
   const double depth_mm = 1e3 * monitor.axial_depth, limit_mm = 1e3 * monitor.depth_limit;
   if (std::isinf(limit_mm)) return sentence("%.2f mm deep, no limit predicted at this speed", depth_mm);
@@ -141,9 +148,8 @@ ShownState CellView::state(std::int64_t now_ns) const {
   if (std::string why = why_fault(); !why.empty()) return {Shown::fault, std::move(why)};
   if (health_ && health_->frames == 0) return {Shown::cannot_tell, "no CAN frame was heard yet; see 'stillcut doctor'"};
   if (const Correction* now = asked(); now != nullptr && now->mode == RuntimeMode::active) {
-    std::string reason{text_of(now->reason)};
-    if (monitor_->chatter) reason = chatter_sentence(*monitor_) + ": " + reason;
-    return {Shown::correcting, std::move(reason)};
+    return {Shown::correcting, asked_sentence(*now) + (monitor_->chatter ? ", against " + chatter_sentence(*monitor_)
+                                                                         : ", the chatter is over")};
   }
   if (monitor_->chatter) return {Shown::chatter, chatter_sentence(*monitor_)};
   return in_the_cut();
