@@ -121,13 +121,26 @@ bool count_fits(std::span<const std::uint8_t> bytes) {
   return count <= RobotPath::kMaxPoints && bytes.size() == kFingerprint + kTime + kCount + count * kPoint;
 }
 
-// Likewise of stages.
+// Likewise of stages and of their names, each of them a text with its length before it.
 bool stages_fit(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t kFingerprint = 8, kTimes = 5 * 8 + 1, kCount = 4, kMostStages = 64;
-  if (bytes.size() < kFingerprint + kTimes + kCount) return false;
-  std::size_t count = 0;
-  for (const std::uint8_t byte : bytes.subspan(kFingerprint + kTimes, kCount)) count = count << 8 | byte;
-  return count <= kMostStages;
+  constexpr std::size_t kFingerprint = 8, kTimes = 5 * 8 + 1, kLength = 4, kMostStages = 64, kNumbers = 5 * 8;
+  std::size_t at = kFingerprint + kTimes;
+  const auto length_here = [&] {
+    std::size_t length = 0;
+    for (const std::uint8_t byte : bytes.subspan(at, kLength)) length = length << 8 | byte;
+    at += kLength;
+    return length;
+  };
+  if (bytes.size() < at + kLength) return false;
+  const std::size_t stages = length_here();
+  if (stages > kMostStages) return false;
+  for (std::size_t i = 0; i < stages; ++i) {
+    if (bytes.size() < at + kLength) return false;
+    const std::size_t length = length_here();
+    if (length < 1 || length > bytes.size() - at) return false;
+    at += length;
+  }
+  return bytes.size() == at + stages * kNumbers;
 }
 
 const char* reason_to_refuse(const correction_ack_t& m) {
