@@ -25,7 +25,7 @@ struct Reported {
   std::string page;
 };
 
-Reported report_of(const DemoCell& files, const std::vector<std::string>& more = {}) {
+Reported report_of(const DemoCell& files, const std::vector<std::string>& more = {"--pictures", "0"}) {
   std::vector<std::string> arguments{"stillcut", "report", "cell.toml", "--can",
                                      "cut.log",  "--out",  "page.html", "--json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -66,7 +66,7 @@ std::string text_of(const tinyxml2::XMLNode& node) {
 TEST(Report, PageIsWellFormedAndNeedsNothingBesideItself) {
   const DemoCell files;
   files.simulate("3.3", kTwoCuts);
-  const Reported report = report_of(files);
+  const Reported report = report_of(files, {});
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(report.page.c_str()), tinyxml2::XML_SUCCESS) << document.ErrorStr();
   int pictures = 0;
@@ -160,7 +160,7 @@ TEST(Report, TellsWhatWasAnsweredAndWhereTheLoopsTimeWent) {
     for (int i = 0; i < 77; ++i) times->loop.execution.record(1000 * i);
     append_lcm_event(log, number++, at(3.2), kLatencyChannel, encode(*times, at(3.2)));
     (void)files.write("robot.lcm", log);
-    const Reported report = report_of(files, {"--lcm", "robot.lcm"});
+    const Reported report = report_of(files, {"--lcm", "robot.lcm", "--pictures", "0"});
     const auto& first = report.json["episodes"].at(0)["corrections"].at(0);
     EXPECT_EQ(first["answer"], accepts ? "followed" : "refused: drive <busy>");
     EXPECT_NEAR(report.json["episodes"][0]["axial_depth_mm"], 3.3, 1e-9);
@@ -211,7 +211,7 @@ TEST(Report, PicturesAreOfTheWorstEpisodesOnly) {
     for (std::size_t at = 0; (at = page.find("data:image/png", at)) != std::string::npos; ++at) ++count;
     return count;
   };
-  const Reported all = report_of(files), one = report_of(files, {"--pictures", "1"});
+  const Reported all = report_of(files, {}), one = report_of(files, {"--pictures", "1"});
   ASSERT_GE(all.json["episodes"].size(), 2U);
   EXPECT_EQ(pictures_in(all.page), all.json["episodes"].size());
   EXPECT_EQ(pictures_in(one.page), 1U);
