@@ -57,8 +57,6 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-std::string_view text_of(const ShortText& text) { return {text.data()}; }
-
 std::string exchange_line(const ExchangeEntry& entry) {
   std::string line = std::to_string(entry.time_ns) + ' ';
   line.append(kKindNames.at(static_cast<std::size_t>(entry.kind))) += ' ';

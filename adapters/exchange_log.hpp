@@ -48,6 +48,5 @@ class ExchangeRecorder {
 
 std::string_view text_of(std::span<const std::uint8_t> bytes);
 std::span<const std::uint8_t> bytes_of(std::string_view text);
-std::string_view text_of(const ShortText& text);
 
 }  // namespace stillcut

@@ -3,6 +3,7 @@
 // quantities are SI (m, s, rad) unless the name says otherwise.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -57,6 +58,11 @@ constexpr ShortText short_text(std::string_view text) {
   ShortText out{};
   for (std::size_t i = 0; i + 1 < out.size() && i < text.size(); ++i) out[i] = text[i];
   return out;
+}
+
+// The text as far as it goes.
+inline std::string_view text_of(const ShortText& text) {
+  return {text.data(), static_cast<std::size_t>(std::find(text.begin(), text.end(), '\0') - text.begin())};
 }
 
 struct Event {

@@ -172,6 +172,10 @@ double Core::axial_depth() const noexcept {
   return robot_heard_ && std::isfinite(robot_.axial_depth) ? robot_.axial_depth : settings_.axial_depth;
 }
 
+double Core::feed_direction() const noexcept {
+  return robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
+}
+
 // The depth for which a correction is chosen: while the tool goes deeper that of a second later, up to the nominal one.
 double Core::coming_depth() const noexcept {
   const double now = axial_depth();
@@ -195,7 +199,7 @@ void Core::decide(std::int64_t stamp_ns) noexcept {
   in.robot = robot_heard_ ? &robot_ : nullptr;
   in.axial_depth = axial_depth();
   in.coming_depth = coming_depth();
-  in.feed_direction = robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
+  in.feed_direction = feed_direction();
   in.nominal_speed = robot_heard_ ? rpm_to_rad_s(robot_.spindle_speed_rpm) : settings_.nominal_speed;
   in.in_time = in_time_;
   in.controller_alive = robot_heard_ && now_ns - robot_.stamp_ns < kControllerSilent_ns;

@@ -62,6 +62,13 @@ class Core {
   [[nodiscard]] const MonitorView& view() const noexcept { return monitor_.view(); }
   [[nodiscard]] const CoreCounters& counters() const noexcept { return counters_; }
   [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }  // data time; 0 before the first frame
+  // As the robot says, else as the cell file: m.
+  [[nodiscard]] double axial_depth() const noexcept;
+  [[nodiscard]] double feed_direction() const noexcept;  // rad, the same way
+  // a_lim / a - 1 at the present posture, speed and depth; NaN unknown.
+  [[nodiscard]] double predicted_margin() const noexcept;
+  [[nodiscard]] RuntimeMode mode() const noexcept { return settings_.compensator.mode; }
   // The newest state; nullptr when none was heard yet.
   [[nodiscard]] const RobotState* robot() const noexcept { return robot_heard_ ? &robot_ : nullptr; }
   // The diagram in use; nullptr when there is none that fits the posture.
@@ -79,9 +86,7 @@ class Core {
   }
   void put_status(std::int64_t now_ns) noexcept;
   void update_prior() noexcept;
-  [[nodiscard]] double axial_depth() const noexcept;
   [[nodiscard]] double coming_depth() const noexcept;
-  [[nodiscard]] double predicted_margin() const noexcept;
 
   CoreSettings settings_;
   Monitor monitor_;

@@ -5,7 +5,7 @@
 //   thread      method                             progress
 //   one writer  record                             wait-free, a few instructions
 //   any         count, percentile_ns, max_ns,      wait-free; while the writer records, a reading may lack the newest
-//               summary                            values, but never shows one that was not recorded
+//               summary, for_each                  values, but never shows one that was not recorded
 #pragma once
 
 #include <algorithm>
@@ -55,6 +55,14 @@ class LatencyHistogram {
       if (below != 0 && static_cast<double>(below) >= rank) return std::min(upper_edge(i), max_ns());
     }
     return max_ns();
+  }
+
+  // visit(longest duration in ns, how many) of every bin that is not empty, shortest first.
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t i = 0; i < bins_.size(); ++i)
+      if (const std::uint64_t count = bins_[i].load(std::memory_order_relaxed); count != 0)
+        visit(std::min(upper_edge(i), max_ns()), count);
   }
 
   [[nodiscard]] LatencySummary summary() const noexcept {

@@ -34,6 +34,7 @@ int run_stillcut(int argc, char** argv) {
   add_refine_command(app);
   add_replay_command(app);
   add_report_command(app);
+  add_scope_command(app);
   add_simulate_command(app);
   add_stability_command(app);
   add_surface_command(app);

@@ -21,6 +21,7 @@ void add_plant_command(CLI::App& app);
 void add_refine_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_scope_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
 void add_surface_command(CLI::App& app);

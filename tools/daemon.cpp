@@ -66,6 +66,7 @@ void run_daemon(const DaemonOptions& options) {
                .cpu = options.cpu,
                .audit = options.audit,
                .allow_not_real_time = options.allow_not_real_time,
+               .telemetry = options.telemetry,
                .on_output = [&newest](const Output& output) {
                  if (output.type == Output::Type::status) newest.publish(output.status);
                }}};

@@ -14,6 +14,7 @@ struct DaemonOptions {
   int cpu = -1;                      // processor of the loop; -1: any
   bool json = false;                 // the summary as one JSON object on standard output
   bool allow_not_real_time = false;  // active on a host that cannot keep time: for the bench
+  bool telemetry = true;             // tell onlookers what is heard and thought
   bool audit = false;                // end with status 134 at the loop's first forbidden system call
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 namespace stillcut {
 namespace {
@@ -37,6 +38,7 @@ bool LiveLoop::tick(std::int64_t awake_ns) noexcept {
     hand_over();
   }
   if (live_clock_) keep_time(awake_ns);
+  if (watched_) show();
   stages.end_tick();
   return bus_.state() != BusState::ended;
 }
@@ -135,6 +137,15 @@ void LiveLoop::feed(const CanFrame& frame) noexcept {
   fed_ns_ = std::max(fed_ns_, frame.stamp_ns);
   frame_fed_ = true;
   record(frame);
+  if (watched_) (void)channels_.watched.push(frame);  // a full ring is counted by the ring
+}
+
+// Every five milliseconds, and at once when something was decided.
+void LiveLoop::show() noexcept {
+  constexpr int kTicksApart = 5;
+  if (!std::exchange(handed_over_, false) && --ticks_to_show_ > 0) return;
+  ticks_to_show_ = kTicksApart;
+  channels_.view.publish(view_of(pipeline_.core(), pipeline_.decoder().counters()));
 }
 
 // Playback knows of a silence only what is recorded of it. Before the first frame there is none.
@@ -153,6 +164,7 @@ void LiveLoop::record(const CoreInput& input) noexcept {
 bool LiveLoop::hand_over() noexcept {
   Core& core = pipeline_.core();
   if (core.outputs().empty()) return false;
+  handed_over_ = true;
   channels_.times.stages.begin(Stage::hand_over);
   // Relaxed: the ring's release below orders it before the first output.
   channels_.origin_ns.store(core.origin_ns(), std::memory_order_relaxed);

@@ -5,6 +5,9 @@
 //   subscriber thread   loop                messages     ring, robot states and acknowledgements
 //   loop                publisher thread    outputs      ring, events, corrections, status
 //   loop                recorder thread     recorded     ring, all that went into the core, in that order
+//   loop                telemetry thread    watched      ring, frames that went into the core
+//   loop                telemetry thread    view         snapshot, what the core knows, 200 times a second
+//   model thread        telemetry thread    shown_lobes  snapshot, the newest diagram of the present posture
 #pragma once
 
 #include <array>
@@ -20,6 +23,7 @@
 #include "rt/ring.hpp"
 #include "rt/snapshot.hpp"
 #include "rt/timekeeper.hpp"
+#include "tools/loop_view.hpp"
 #include "tools/pipeline.hpp"
 
 namespace stillcut {
@@ -36,13 +40,18 @@ struct LobesAnswer {
 };
 
 struct LoopChannels {
-  // recorded_too: whether somebody takes what goes into the core; its ring is most of the memory here.
-  explicit LoopChannels(bool recorded_too = true) : recorded{recorded_too ? std::size_t{32768} : std::size_t{1}} {}
+  // Whether somebody takes what goes into the core, and the frames of it; their rings are most of the memory here.
+  explicit LoopChannels(bool recorded_too = true, bool watched_too = true)
+      : recorded{recorded_too ? std::size_t{32768} : std::size_t{1}},
+        watched{watched_too ? std::size_t{8192} : std::size_t{1}} {}
 
   Snapshot<LobesAnswer> lobes, ahead;  // of the present posture, along the announced path
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
-  Ring<CoreInput> recorded;                // ten seconds of a triaxial 25.6 kHz sensor
+  Ring<CoreInput> recorded;  // ten seconds of a triaxial 25.6 kHz sensor
+  Ring<CanFrame> watched;    // three seconds of it
+  Snapshot<LoopView> view;
+  Snapshot<LobeDiagram> shown_lobes;
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output
   LoopTimes times;
 };
@@ -53,15 +62,16 @@ class LiveLoop {
 
   // live_clock: the bus stamps with this host's CLOCK_REALTIME, so silence can be told from it; false for a log.
   // record: hand all that goes into the core to the recorder's ring. must_keep_time: out of time, what was asked for is
-  // released. All references must outlive the loop.
+  // released. watched: hand frames and view to the telemetry. All references must outlive the loop.
   LiveLoop(CanBus& bus, Pipeline& pipeline, LoopChannels& channels, bool live_clock, bool record, bool must_keep_time,
-           Clock clock = realtime_ns) noexcept
+           Clock clock = realtime_ns, bool watched = false) noexcept
       : bus_{bus},
         pipeline_{pipeline},
         channels_{channels},
         live_clock_{live_clock},
         record_{record},
         must_keep_time_{must_keep_time},
+        watched_{watched},
         clock_{clock} {
     pipeline_.set_probe(channels_.times.stages.probe());
   }
@@ -81,11 +91,12 @@ class LiveLoop {
   void feed_silence() noexcept;
   void record(const CoreInput& input) noexcept;
   bool hand_over() noexcept;  // true: there was something
+  void show() noexcept;
 
   CanBus& bus_;
   Pipeline& pipeline_;
   LoopChannels& channels_;
-  bool live_clock_, record_, must_keep_time_;
+  bool live_clock_, record_, must_keep_time_, watched_;
   bool drained_ = false;  // the bus, in this tick
   Timekeeper timekeeper_{kLoopPeriodNs};
   Clock clock_;
@@ -95,6 +106,8 @@ class LiveLoop {
   RobotMessage waiting_{};
   bool has_waiting_ = false;
   bool frame_fed_ = false;
+  bool handed_over_ = false;         // in this tick
+  int ticks_to_show_ = 0;            // until the view is due again
   std::int64_t fed_ns_ = 0;          // the core's data time: newest frame, or declared silence
   std::int64_t declared_ns_ = 0;     // up to here data time has been moved on in silence
   std::int64_t clock_shift_ns_ = 0;  // added to the clock and the stamps after the host's clock was set back

@@ -41,7 +41,7 @@ class PublisherThread {
         drain();
         if (const std::int64_t now_ns = realtime_ns(); now_ns - times_told_ns_ >= kTellTimesEvery_ns) {
           times_told_ns_ = now_ns;
-          publisher_.publish(channels_.times, now_ns);
+          publisher_.publish(TelemetryMessage{latency_report(channels_.times, now_ns)});
         }
         std::this_thread::sleep_for(kPoll);
       }

@@ -13,9 +13,11 @@
 #include "rt/thread.hpp"
 #include "tools/live_loop.hpp"
 #include "tools/live_outputs.hpp"
+#include "tools/live_telemetry.hpp"
 #include "tools/predictor.hpp"
 #include "tools/real_time_check.hpp"
 #include "tools/recorder.hpp"
+#include "tools/spoken.hpp"
 
 namespace stillcut {
 namespace {
@@ -100,12 +102,6 @@ void add_recording(nlohmann::ordered_json& summary, const RecorderCounters& reco
   summary["record_stops"] = recorded.stops;
 }
 
-const char* mode_name(const Cell& cell) {
-  if (cell.measures) return "measure";
-  if (cell.mode == RuntimeMode::active) return "active";
-  return cell.mode == RuntimeMode::shadow ? "shadow" : "off";
-}
-
 }  // namespace
 
 // Order matters: what is declared first outlives the threads that use it.
@@ -126,6 +122,7 @@ struct LiveRun::Parts {
   PredictionPace pace;                // the subscriber thread's
   std::jthread model;
   std::optional<Subscriber> subscriber;
+  std::optional<TelemetryThread> telemetry;
   std::optional<LoopSyscallFilter> audit;
   std::atomic<bool> stop_loop{false}, loop_ended{false};
   std::optional<LiveLoop> live;
@@ -136,7 +133,7 @@ struct LiveRun::Parts {
 LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmConnection& lcm,
                       const LiveRunOptions& options)
     : pipeline{cell},
-      channels{std::make_unique<LoopChannels>(records(cell, options))},
+      channels{std::make_unique<LoopChannels>(records(cell, options), options.telemetry)},
       publisher{*channels, lcm, options.events, cell.mode, [this, on_output = options.on_output](const Output& output) {
                   if (recorder) recorder->add_output(output);
                   if (on_output) on_output(output);
@@ -145,6 +142,7 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
     const NominalPrediction prediction = predictor.emplace(cell).nominal();
     if (!prediction.warning.empty()) spdlog::warn(prediction.warning);
     pipeline.core().add_lobes(prediction.diagram);
+    channels->shown_lobes.publish(prediction.diagram);
   }
   const RealTimeSettings real_time{.priority = options.priority, .cpu = options.cpu};
   if (cell.mode == RuntimeMode::active && !options.allow_not_real_time) require_real_time(real_time);
@@ -169,7 +167,17 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
 
   if (options.audit) audit.emplace();
   live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), records(cell, options),
-               !options.allow_not_real_time);
+               !options.allow_not_real_time, realtime_ns, options.telemetry);
+  if (options.telemetry)
+    telemetry.emplace(cell, pipeline.decoder(), *channels, lcm, [this, recording = records(cell, options)] {
+      return LiveLosses{bus->state(),
+                        bus->counters(),
+                        static_cast<std::int64_t>(channels->outputs.refused()),
+                        static_cast<std::int64_t>(recording ? channels->recorded.refused() : 0),
+                        static_cast<std::int64_t>(channels->watched.refused()),
+                        subscriber->bad(),
+                        publisher.publisher().failed()};
+    });
   publisher.start();
   loop.emplace(real_time, [this] {
     if (audit && audit->install() != 0) std::abort();
@@ -179,15 +187,18 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
     loop_ended.store(true, std::memory_order_release);
   });
   if (!loop->report().complete()) spdlog::warn("not fully real-time: {}", loop->report().reasons);
-  spdlog::info("stillcutd runs: {} on {}, mode {}", cell.file.string(), bus_name, mode_name(cell));
+  spdlog::info("stillcutd runs: {} on {}, mode {}", cell.file.string(), bus_name,
+               cell.measures ? "measure" : mode_name(cell.mode));
 }
 
 void LiveRun::Parts::run_model(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (newest_state.update()) {
-      if (const auto diagram = predictor->at(newest_state.value()))
+      if (const auto diagram = predictor->at(newest_state.value())) {
         channels->lobes.publish(
             {*diagram, recorder ? recorder->add_question(encode(predictor->answered()), false) : 0});
+        channels->shown_lobes.publish(*diagram);
+      }
     }
     if (newest_path.update()) {
       const RobotPath& path = newest_path.value();
@@ -203,6 +214,7 @@ void LiveRun::Parts::stop() {
   stop_loop.store(true, std::memory_order_release);
   loop->join();
   publisher.finish();
+  telemetry.reset();
   if (frame_log) frame_log->finish();
   if (recorder) recorder->finish();
 }

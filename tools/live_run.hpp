@@ -26,6 +26,7 @@ struct LiveRunOptions {
   bool audit = false;        // end with status 134 at the loop's first forbidden system call
   // Active on a host that cannot keep time, and no release when the loop falls out of time: for the bench.
   bool allow_not_real_time = false;
+  bool telemetry = true;  // tell onlookers over LCM what is heard and thought (tools/telemetry.hpp)
   std::function<void(const Output&)>
       on_output;  // told of all that is published, on the publisher's thread; may be empty
 };

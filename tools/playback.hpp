@@ -10,6 +10,7 @@
 
 #include "drivers/files/cell.hpp"
 #include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "tools/pipeline.hpp"
 
 namespace stillcut {
@@ -32,7 +33,7 @@ struct PlaybackSummary {
   std::int64_t frames = 0, frames_bad = 0, frames_lost = 0, frames_out_of_order = 0;
   bool is_recording = false, from_the_start = true;
   std::int64_t inputs_lost = 0;               // that the recorder had to leave out
-  std::optional<LoopTimesReport> loop_times;  // the newest that the recording holds
+  std::optional<LatencyReport> loop_times;  // the newest that the recording holds
   std::vector<std::string> warnings;          // lines for the user
 };
 

@@ -122,7 +122,7 @@ Panel spectrogram_panel(const ReplayTrace& replay) {
   return panel;
 }
 
-const char* chatter_name(ChatterKind kind) {
+const char* chatter_label(ChatterKind kind) {
   switch (kind) {
     case ChatterKind::regenerative:
       return "regenerative chatter";
@@ -139,7 +139,7 @@ std::vector<EventMark> event_marks(const ReplayTrace& replay) {
     switch (event.type) {
       case EventType::chatter_onset:
         marks.push_back({event.time_s,
-                         format("%.3f s  %s, %.0f Hz", event.time_s, chatter_name(event.kind), event.frequency_hz),
+                         format("%.3f s  %s, %.0f Hz", event.time_s, chatter_label(event.kind), event.frequency_hz),
                          plot::kVermilion});
         break;
       case EventType::chatter_end:

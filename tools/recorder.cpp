@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "drivers/can/candump_log.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 
 namespace stillcut {
 namespace {
@@ -200,7 +201,7 @@ void Recorder::note_lost() {
 // Where the loop's time went until now, for who reads the recording.
 void Recorder::note_loop_times() {
   if (folder_.is_open() && newest_ns_ != 0)
-    write_message(newest_ns_, kLatencyChannel, encode(channels_.times, realtime_ns()));
+    write_message(newest_ns_, kLatencyChannel, encode(latency_report(channels_.times, realtime_ns())));
 }
 
 void Recorder::flush(double now_s) {

@@ -110,7 +110,7 @@ struct Report {
   std::vector<ReportLobes> lobes;
   std::vector<ReportSensor> sensors;
   std::vector<ReportFault> faults;
-  std::optional<LoopTimesReport> loop_times;
+  std::optional<LatencyReport> loop_times;
 };
 
 }  // namespace stillcut

@@ -108,8 +108,8 @@ nlohmann::ordered_json report_json(const Report& report) {
   json["latency_us"] = nullptr;
   if (!report.loop_times) return json;
   json["latency_us"] = Json::object();
-  for (const StageLatency& stage : report.loop_times->stages)
-    json["latency_us"][stage.stage] = {{"count", stage.count},
+  for (const LatencyReport::Stage& stage : report.loop_times->stages)
+    json["latency_us"][stage.name] = {{"count", stage.count},
                                        {"p50", stage.p50_us},
                                        {"p99", stage.p99_us},
                                        {"p99.9", stage.p999_us},

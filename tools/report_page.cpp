@@ -107,7 +107,7 @@ std::string margin_text(const ReportCorrection& correction) {
 
 std::string asked_text(const ReportCorrection& correction) {
   if (correction.first_sequence == 0) return correction.note;
-  const std::string speeds = shown(correction.from_rpm, 0) + " → " + shown(correction.target_rpm, 0) + " rpm";
+  std::string speeds = shown(correction.from_rpm, 0) + " → " + shown(correction.target_rpm, 0) + " rpm";
   switch (correction.kind) {
     case CorrectionKind::spindle_speed:
       return speeds;
@@ -250,10 +250,10 @@ void write_latency(const Report& report, std::ostream& out) {
            "loop's time went.</p>\n";
     return;
   }
-  const LoopTimesReport& times = *report.loop_times;
+  const LatencyReport& times = *report.loop_times;
   html::Table table{{"stage", "count", "p50 [µs]", "p99 [µs]", "p99.9 [µs]", "max [µs]"}, {}, {}};
-  for (const StageLatency& stage : times.stages)
-    table.rows.push_back({stage.stage, std::to_string(stage.count), shown(stage.p50_us, 1), shown(stage.p99_us, 1),
+  for (const LatencyReport::Stage& stage : times.stages)
+    table.rows.push_back({stage.name, std::to_string(stage.count), shown(stage.p50_us, 1), shown(stage.p99_us, 1),
                           shown(stage.p999_us, 1), shown(stage.max_us, 1)});
   out << "<div class=\"card\">\n"
       << html::facts({{"Ticks of 1 ms", std::to_string(times.ticks)},

@@ -70,7 +70,7 @@ std::optional<RobotPlayback::Waiting> RobotPlayback::read(LcmLogReader& log, con
   if (event.channel == kRobotStateChannel) return good(decode_robot_state(event.data, stamp_ns));
   if (event.channel == kRobotAckChannel) return good(decode_correction_ack(event.data, stamp_ns));
   if (event.channel == kLatencyChannel) {
-    if (auto times = decode_loop_times(event.data); times.ok()) loop_times_ = std::move(times.value);
+    if (auto times = decode_latency(event.data); times.ok()) loop_times_ = std::move(times.value);
   }
   if (!is_recording_) {
     if (event.channel == kRobotPathChannel) return good(decode_robot_path(event.data, stamp_ns));

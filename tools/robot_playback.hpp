@@ -14,6 +14,7 @@
 
 #include "drivers/lcm/lcm_log.hpp"
 #include "drivers/lcm/recording_messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "rt/core.hpp"
 #include "tools/predictor.hpp"
 
@@ -43,7 +44,7 @@ class RobotPlayback {
   [[nodiscard]] const std::vector<MessageBytes>& published() const { return published_; }
 
   // Where the live loop's time went, by the newest message of it; nothing where the recording holds none.
-  [[nodiscard]] const std::optional<LoopTimesReport>& loop_times() const { return loop_times_; }
+  [[nodiscard]] const std::optional<LatencyReport>& loop_times() const { return loop_times_; }
 
  private:
   struct Waiting {
@@ -67,7 +68,7 @@ class RobotPlayback {
   std::map<std::string, std::optional<LobeDiagram>> computed_;  // by question; a robot that stands asks the same
   std::vector<MessageBytes> published_;
   std::function<void(const RobotMessage&)> listener_;
-  std::optional<LoopTimesReport> loop_times_;
+  std::optional<LatencyReport> loop_times_;
   std::int64_t bad_ = 0, lobes_missing_ = 0, lost_ = 0;
 };
 

@@ -6,28 +6,19 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "tools/spoken.hpp"
+
 namespace stillcut {
 namespace {
 
 constexpr std::int64_t kTellEvery_ns = 1'000'000'000;  // the line is for people
-
-const char* state_name(State state) {
-  constexpr std::array kNames{"idle", "air", "entry", "cut", "exit", "chatter", "cannot tell", "fault"};
-  const auto at = static_cast<std::size_t>(state);
-  return at < kNames.size() ? kNames[at] : "unknown state";
-}
-
-const char* service_mode(RuntimeMode mode) {
-  constexpr std::array kNames{"off", "shadow", "active"};
-  return kNames[static_cast<std::size_t>(mode)];
-}
 
 }  // namespace
 
 std::string service_status_line(const Status& status) {
   std::array<char, 160> line{};
   const int length = std::snprintf(line.data(), line.size(), "%s, %s, %.0f rpm, %lld frames, %lld lost",
-                                   state_name(status.state), service_mode(status.mode), status.spindle_speed_rpm,
+                                   state_name(status.state), mode_name(status.mode), status.spindle_speed_rpm,
                                    static_cast<long long>(status.frames), static_cast<long long>(status.frames_lost));
   return {line.data(), static_cast<std::size_t>(length)};
 }

@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "at the end print one JSON object");
   app.add_flag("--allow-not-real-time", options.allow_not_real_time,
                "on the bench: run active mode though this host cannot keep time, and release nothing when it does not");
+  app.add_flag("!--no-telemetry", options.telemetry,
+               "publish only corrections, events, status and latency: nothing more for scope, top and stillcut-dds");
   app.add_flag("--audit", options.audit,
                "abort (status 134) at the loop's first system call but receive, sleep and clock");
   app.footer(

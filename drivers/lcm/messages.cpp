@@ -5,16 +5,16 @@
 #include <stillcut/correction_ack_t.hpp>
 #include <stillcut/correction_t.hpp>
 #include <stillcut/event_t.hpp>
-#include <stillcut/loop_times_t.hpp>
 #include <stillcut/robot_path_t.hpp>
 #include <stillcut/robot_state_t.hpp>
 #include <stillcut/status_t.hpp>
 #include <string>
 
+#include "drivers/lcm/message_bytes.hpp"
+
 namespace stillcut {
 namespace {
 
-constexpr std::int64_t kNsPerUs = 1000;
 constexpr std::int64_t kUsPerMs = 1000;
 
 // Beyond these no machine moves: such a message is a fault of the sender.
@@ -29,10 +29,6 @@ constexpr const char* kWrongType =
     "the bytes are no message of this type; is the sender built from the same .lcm files?";
 constexpr const char* kBadTime = "utime is out of range";
 
-// Rounds down, as stamps before 1970 would show.
-std::int64_t to_us(std::int64_t ns) { return ns / kNsPerUs - (ns % kNsPerUs < 0 ? 1 : 0); }
-bool is_time(std::int64_t us) { return us >= -kLastUs && us <= kLastUs; }
-
 bool within(double value, double min, double max) { return value >= min && value <= max; }  // false for NaN
 template <class Range>
 bool all_within(const Range& values, double min, double max) {
@@ -43,13 +39,6 @@ bool all_within(const Range& values, double min, double max) {
 }
 bool unknown_or_within(double value, double min, double max) { return std::isnan(value) || within(value, min, max); }
 
-template <class Message>
-MessageBytes to_bytes(const Message& message) {
-  MessageBytes bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 // A text is the last field of every type that has one: its length (four bytes, the terminating zero counted) must lead
 // exactly to the message's end. The generated code does not check a length below 1.
 template <class Message>
@@ -57,9 +46,7 @@ bool text_fits(std::span<const std::uint8_t> bytes, const Message& empty) {
   constexpr std::size_t kLengthBytes = 4, kTerminator = 1;
   const auto text_at = static_cast<std::size_t>(empty.getEncodedSize()) - kTerminator;
   if (bytes.size() < text_at + kTerminator) return false;
-  std::size_t length = 0;
-  for (const std::uint8_t byte : bytes.subspan(text_at - kLengthBytes, kLengthBytes)) length = length << 8 | byte;
-  return text_at + length == bytes.size();
+  return text_at + count_at(bytes, text_at - kLengthBytes) == bytes.size();
 }
 
 // False when the bytes are of another type, cut short or too long. `message` comes as its default.
@@ -69,16 +56,13 @@ bool from_bytes(std::span<const std::uint8_t> bytes, Message& message) {
   || requires { message.note; };
   if (bytes.size() > kLargestMessage) return false;
   if (kHasText && !text_fits(bytes, message)) return false;
-  const int size = static_cast<int>(bytes.size());
-  return message.decode(bytes.data(), 0, size) == size;
+  return decode_whole(bytes, message);
 }
 
 template <class T>
 Received<T> refused(const char* why_not) {
   return {T{}, why_not};
 }
-
-std::string text_of(const ShortText& text) { return {text.begin(), std::find(text.begin(), text.end(), '\0')}; }
 
 const char* reason_to_refuse(const robot_state_t& m) {
   if (!all_within(m.joint_position_rad, -kMaxJointRad, kMaxJointRad)) return "joint_position_rad is no angle";
@@ -111,36 +95,12 @@ const char* reason_to_refuse(const robot_path_t& m) {
   return nullptr;
 }
 
-// The generated code makes as many points as `count` asks for before it looks at the bytes.
 bool count_fits(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kFingerprint = 8, kTime = 8, kCount = 4;
   constexpr std::size_t kPoint = 8 * (1 + 6 + 3 + 1 + 1) + 1;
   if (bytes.size() < kFingerprint + kTime + kCount) return false;
-  std::size_t count = 0;
-  for (const std::uint8_t byte : bytes.subspan(kFingerprint + kTime, kCount)) count = count << 8 | byte;
+  const std::size_t count = count_at(bytes, kFingerprint + kTime);
   return count <= RobotPath::kMaxPoints && bytes.size() == kFingerprint + kTime + kCount + count * kPoint;
-}
-
-// Likewise of stages and of their names, each of them a text with its length before it.
-bool stages_fit(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t kFingerprint = 8, kTimes = 5 * 8 + 1, kLength = 4, kMostStages = 64, kNumbers = 5 * 8;
-  std::size_t at = kFingerprint + kTimes;
-  const auto length_here = [&] {
-    std::size_t length = 0;
-    for (const std::uint8_t byte : bytes.subspan(at, kLength)) length = length << 8 | byte;
-    at += kLength;
-    return length;
-  };
-  if (bytes.size() < at + kLength) return false;
-  const std::size_t stages = length_here();
-  if (stages > kMostStages) return false;
-  for (std::size_t i = 0; i < stages; ++i) {
-    if (bytes.size() < at + kLength) return false;
-    const std::size_t length = length_here();
-    if (length < 1 || length > bytes.size() - at) return false;
-    at += length;
-  }
-  return bytes.size() == at + stages * kNumbers;
 }
 
 const char* reason_to_refuse(const correction_ack_t& m) {
@@ -228,27 +188,6 @@ MessageBytes encode(const Event& event) {
   m.spindle_speed_rpm = event.spindle_speed_rpm;
   m.note = text_of(event.note);
   return to_bytes(m);
-}
-
-MessageBytes encode(const LoopTimes& times, std::int64_t stamp_ns) {
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  loop_times_t message;
-  message.utime = to_us(stamp_ns);
-  message.ticks = static_cast<std::int64_t>(times.loop.ticks.load());
-  message.overruns = static_cast<std::int64_t>(times.loop.overruns.load());
-  message.skipped = static_cast<std::int64_t>(times.loop.skipped.load());
-  message.times_out = static_cast<std::int64_t>(times.times_out.load());
-  message.in_time = times.in_time.load() ? 1 : 0;
-  for (const NamedLatency& stage : named_latencies(times)) {
-    message.stage.emplace_back(stage.name);
-    message.count.push_back(static_cast<std::int64_t>(stage.times.count));
-    message.p50_us.push_back(us(stage.times.p50_ns));
-    message.p99_us.push_back(us(stage.times.p99_ns));
-    message.p999_us.push_back(us(stage.times.p999_ns));
-    message.max_us.push_back(us(stage.times.max_ns));
-  }
-  message.stages = static_cast<std::int32_t>(message.stage.size());
-  return to_bytes(message);
 }
 
 MessageBytes encode(const Status& status) {
@@ -370,16 +309,6 @@ Received<Status> decode_status(std::span<const std::uint8_t> bytes) {
   if (m.mode < 0 || m.mode > 2) return refused<Status>("mode is not 0, 1 or 2");
   return {Status{m.utime * kNsPerUs, static_cast<State>(m.state), static_cast<RuntimeMode>(m.mode), m.spindle_speed_rpm,
                  m.indicator, m.margin, m.chatter_frequency_hz, m.frames, m.frames_lost, m.lobes_utime * kNsPerUs}};
-}
-
-Received<LoopTimesReport> decode_loop_times(std::span<const std::uint8_t> bytes) {
-  loop_times_t m{};
-  if (!stages_fit(bytes) || !from_bytes(bytes, m)) return refused<LoopTimesReport>(kWrongType);
-  if (!is_time(m.utime)) return refused<LoopTimesReport>(kBadTime);
-  LoopTimesReport report{m.utime * kNsPerUs, m.ticks, m.overruns, m.skipped, m.times_out, m.in_time == 1, {}};
-  for (std::size_t i = 0; i < m.stage.size(); ++i)
-    report.stages.push_back({m.stage[i], m.count[i], m.p50_us[i], m.p99_us[i], m.p999_us[i], m.max_us[i]});
-  return {report};
 }
 
 }  // namespace stillcut

@@ -8,19 +8,16 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "rt/loop_times.hpp"
 #include "rt/signals.hpp"
 
 namespace stillcut {
 
 inline constexpr const char *kRobotStateChannel = "ROBOT_STATE", *kRobotAckChannel = "ROBOT_ACK",
                             *kRobotPathChannel = "ROBOT_PATH", *kCorrectionChannel = "STILLCUT_CORRECTION",
-                            *kEventChannel = "STILLCUT_EVENT", *kStatusChannel = "STILLCUT_STATUS",
-                            *kLatencyChannel = "STILLCUT_LATENCY";
+                            *kEventChannel = "STILLCUT_EVENT", *kStatusChannel = "STILLCUT_STATUS";
 
 // The last microsecond, counted from 1970, that fits in nanoseconds.
 inline constexpr std::int64_t kLastUs = std::numeric_limits<std::int64_t>::max() / 1000;
@@ -33,7 +30,6 @@ MessageBytes encode(const CorrectionAck& ack, std::string_view reason = {});
 MessageBytes encode(const Correction& correction);
 MessageBytes encode(const Event& event);
 MessageBytes encode(const Status& status);
-MessageBytes encode(const LoopTimes& times, std::int64_t stamp_ns);
 
 // A decoded message, or why it cannot be trusted ("feed_rate_m_per_s is not a number from 0 to 100").
 template <class T>
@@ -55,18 +51,5 @@ Received<CorrectionAck> decode_correction_ack(std::span<const std::uint8_t> byte
 Received<Correction> decode_correction(std::span<const std::uint8_t> bytes);
 Received<Event> decode_event(std::span<const std::uint8_t> bytes);
 Received<Status> decode_status(std::span<const std::uint8_t> bytes);
-
-// Where the loop's time went, as it was published on STILLCUT_LATENCY.
-struct StageLatency {
-  std::string stage;
-  std::int64_t count = 0;
-  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-};
-struct LoopTimesReport {
-  std::int64_t stamp_ns = 0, ticks = 0, overruns = 0, skipped = 0, times_out = 0;
-  bool in_time = true;
-  std::vector<StageLatency> stages;
-};
-Received<LoopTimesReport> decode_loop_times(std::span<const std::uint8_t> bytes);
 
 }  // namespace stillcut

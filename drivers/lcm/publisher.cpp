@@ -18,12 +18,12 @@ bool Publisher::publish(const RobotState& state) { return send(kRobotStateChanne
 
 bool Publisher::publish(const RobotPath& path) { return send(kRobotPathChannel, encode(path)); }
 
-bool Publisher::publish(const LoopTimes& times, std::int64_t stamp_ns) {
-  return send(kLatencyChannel, encode(times, stamp_ns));
-}
-
 bool Publisher::publish(const CorrectionAck& ack, std::string_view reason) {
   return send(kRobotAckChannel, encode(ack, reason));
+}
+
+bool Publisher::publish(const TelemetryMessage& message) {
+  return send(channel_of(message), std::visit([](const auto& m) { return encode(m); }, message));
 }
 
 bool Publisher::send(const char* channel, const MessageBytes& bytes) {

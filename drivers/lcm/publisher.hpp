@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "drivers/lcm/connection.hpp"
-#include "drivers/lcm/messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 
 namespace stillcut {
 
@@ -19,8 +19,8 @@ class Publisher {
   bool publish(const Output& output);
   bool publish(const RobotState& state);  // the plant speaks for the robot
   bool publish(const RobotPath& path);
-  bool publish(const LoopTimes& times, std::int64_t stamp_ns);
   bool publish(const CorrectionAck& ack, std::string_view reason = {});
+  bool publish(const TelemetryMessage& message);
 
   // Any thread.
   [[nodiscard]] std::int64_t sent() const noexcept { return sent_.load(std::memory_order_relaxed); }

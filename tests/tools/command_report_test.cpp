@@ -11,6 +11,7 @@
 
 #include "drivers/files/csv.hpp"
 #include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "tests/tools/run_program.hpp"
 
 namespace stillcut {
@@ -158,7 +159,7 @@ TEST(Report, TellsWhatWasAnsweredAndWhereTheLoopsTimeWent) {
     }
     const auto times = std::make_unique<LoopTimes>();
     for (int i = 0; i < 77; ++i) times->loop.execution.record(1000 * i);
-    append_lcm_event(log, number++, at(3.2), kLatencyChannel, encode(*times, at(3.2)));
+    append_lcm_event(log, number++, at(3.2), kLatencyChannel, encode(latency_report(*times, at(3.2))));
     (void)files.write("robot.lcm", log);
     const Reported report = report_of(files, {"--lcm", "robot.lcm", "--pictures", "0"});
     const auto& first = report.json["episodes"].at(0)["corrections"].at(0);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <random>
 
-#include "drivers/lcm/messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 
 namespace stillcut {
 namespace {
@@ -27,9 +27,9 @@ std::unique_ptr<LoopTimes> some_times(unsigned seed) {
 TEST(LoopTimesMessage, ComesBackAsItWasTold) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto times = some_times(seed);
-    const auto back = decode_loop_times(encode(*times, 1'700'000'000'123'456'000));
+    const auto back = decode_latency(encode(latency_report(*times, 1'700'000'000'123'456'000)));
     ASSERT_TRUE(back.ok()) << back.why_not;
-    const LoopTimesReport& report = back.value;
+    const LatencyReport& report = back.value;
     EXPECT_EQ(report.stamp_ns, 1'700'000'000'123'456'000);
     EXPECT_EQ(report.ticks, static_cast<std::int64_t>(times->loop.ticks));
     EXPECT_EQ(report.overruns, static_cast<std::int64_t>(times->loop.overruns));
@@ -39,7 +39,7 @@ TEST(LoopTimesMessage, ComesBackAsItWasTold) {
     const auto named = named_latencies(*times);
     ASSERT_EQ(report.stages.size(), named.size());
     for (std::size_t i = 0; i < named.size(); ++i) {
-      EXPECT_EQ(report.stages[i].stage, named[i].name);
+      EXPECT_EQ(report.stages[i].name, named[i].name);
       EXPECT_EQ(report.stages[i].count, static_cast<std::int64_t>(named[i].times.count));
       EXPECT_EQ(report.stages[i].p50_us, static_cast<double>(named[i].times.p50_ns) * 1e-3);
       EXPECT_EQ(report.stages[i].p99_us, static_cast<double>(named[i].times.p99_ns) * 1e-3);
@@ -50,15 +50,15 @@ TEST(LoopTimesMessage, ComesBackAsItWasTold) {
 }
 
 TEST(LoopTimesMessage, SurvivesAnyDamage) {
-  const MessageBytes whole = encode(*some_times(1), 1'700'000'000'000'000'000);
+  const MessageBytes whole = encode(latency_report(*some_times(1), 1'700'000'000'000'000'000));
   for (std::size_t length = 0; length < whole.size(); ++length)
-    EXPECT_FALSE(decode_loop_times(std::span(whole).first(length)).ok()) << length;
+    EXPECT_FALSE(decode_latency(std::span(whole).first(length)).ok()) << length;
   std::mt19937 random{3};
   for (int i = 0; i < 20'000; ++i) {
     MessageBytes damaged = whole;
     for (unsigned n = 1 + random() % 4; n > 0; --n)
       damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
-    (void)decode_loop_times(damaged);  // the sanitizers watch
+    (void)decode_latency(damaged);  // the sanitizers watch
   }
 }
 
