@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm/messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "dsp/numbers.hpp"
 #include "models/lobe_diagram.hpp"
 #include "rt/signals.hpp"
