@@ -118,7 +118,7 @@ void ReportCollector::hear_correction(const Correction& correction) {
     asked.mode = correction.mode;
     asked.margin_before = correction.predicted_margin_before;
     asked.margin_after = correction.predicted_margin_after;
-    asked.confidence_percent = static_cast<int>(correction.confidence_percent);
+    asked.confidence_percent = correction.confidence_percent;
   }
   asked.last_sequence = correction.sequence;
 }

@@ -12,7 +12,7 @@ namespace {
 
 using plot::Panel, plot::Line, plot::Band, plot::Scatter;
 
-std::string rounded(double value, double to) { return csv_number(std::round(value / to) * to); }
+std::string to_nearest(double value, double to) { return csv_number(std::round(value / to) * to); }
 
 // Stretches of the timeline in which `wanted` holds; only the first has the label.
 template <class Wanted>
@@ -168,7 +168,7 @@ plot::Figure figure_of(const Report& report, int number) {
   const bool of_cell = lobes.diagram.posture_stamp_ns == 0;
   figure.title = of_cell
                      ? "Lobes of the cell's posture" + (report.posture.empty() ? std::string{} : " " + report.posture)
-                     : "Lobes of the robot's posture at " + rounded(lobes.time_s, 0.1) + " s";
+                     : "Lobes of the robot's posture at " + to_nearest(lobes.time_s, 0.1) + " s";
   figure.subtitle = report.depth_from_robot ? "depths as the robot told them"
                                             : "depths as the cell file has them: nobody told others";
   figure.x = {.label = "spindle speed [rpm]", .min = low_rpm, .max = high_rpm};

@@ -12,6 +12,7 @@
 #include "drivers/files/csv.hpp"
 #include "drivers/lcm/lcm_log.hpp"
 #include "drivers/lcm/telemetry_messages.hpp"
+#include "dsp/numbers.hpp"
 #include "tests/tools/run_program.hpp"
 
 namespace stillcut {

@@ -47,7 +47,7 @@ std::vector<Record> records_in(std::string_view bytes, std::size_t begin = 0) {
 }
 
 struct Message {
-  std::uint64_t channel, time_ns;
+  std::uint64_t channel = 0, time_ns = 0;
   std::string json;
   friend bool operator==(const Message&, const Message&) = default;
 };
