@@ -11,8 +11,10 @@ void add_coefficients_command(CLI::App& app);
 void add_directions_command(CLI::App& app);
 void add_patterns_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
+void add_echo_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_hil_command(CLI::App& app);
+void add_hz_command(CLI::App& app);
 void add_lobes_command(CLI::App& app);
 void add_map_command(CLI::App& app);
 void add_passes_command(CLI::App& app);
@@ -23,6 +25,7 @@ void add_simulate_command(CLI::App& app);
 void add_stability_command(CLI::App& app);
 void add_surface_command(CLI::App& app);
 void add_tap_command(CLI::App& app);
+void add_top_command(CLI::App& app);
 void add_trajectory_command(CLI::App& app);
 void add_tune_command(CLI::App& app);
 
