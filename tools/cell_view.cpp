@@ -14,6 +14,7 @@ namespace {
 constexpr double kSilentIsGone_s = 1.5;
 constexpr std::int64_t kFaultShown_ns = 3'000'000'000;
 constexpr double kWatchIndicator = 0.5;
+constexpr std::int64_t kWatchHeld_ns = 1'000'000'000;
 constexpr std::size_t kMostSpectra = kMaxSensors;
 
 template <class... Values>
@@ -84,6 +85,8 @@ void CellView::take_one(const Status& status) {
 void CellView::take_one(const MonitorReport& report) {
   full_reports_ = true;
   monitor_ = report;
+  // Held for a while: people read it, and the indicator moves with every hop.
+  if (report.indicator >= kWatchIndicator) watch_until_ns_ = report.stamp_ns + kWatchHeld_ns;
 }
 
 void CellView::take_one(const SpectrumReport& report) {
@@ -161,9 +164,8 @@ ShownState CellView::in_the_cut() const {
     case State::chatter:
       break;
   }
-  if (monitor_->indicator >= kWatchIndicator)
-    return {Shown::watch, sentence("the indicator is at %.0f %% of the alarm limit; %s", 100.0 * monitor_->indicator,
-                                   depth_sentence(*monitor_).c_str())};
+  if (monitor_->stamp_ns < watch_until_ns_)
+    return {Shown::watch, "the indicator comes near the alarm limit; " + depth_sentence(*monitor_)};
   if (monitor_->margin < 0.0) return {Shown::watch, "deeper than the lobes allow: " + depth_sentence(*monitor_)};
   return {Shown::stable, depth_sentence(*monitor_)};
 }

@@ -74,6 +74,7 @@ class CellView {
   std::optional<std::int64_t> heard_ns_;
   bool full_reports_ = false;  // a monitor report has come: status says less
   std::optional<MonitorReport> monitor_;
+  std::int64_t watch_until_ns_ = 0;  // data time
   std::optional<DiagramReport> diagram_;
   std::optional<HealthReport> health_;
   std::optional<LatencyReport> latency_;

@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "tools/pipeline.hpp"
 #include "tools/predictor.hpp"
 
 namespace stillcut {
@@ -15,8 +14,8 @@ constexpr std::int64_t kTicksAPoint = 10;
 // The daemon without its threads.
 class DataTimeMonitor {
  public:
-  DataTimeMonitor(const Cell& cell, VirtualMachine& machine)
-      : machine_{machine}, pipeline_{std::make_unique<Pipeline>(cell)}, predictor_{cell} {
+  DataTimeMonitor(const Cell& cell, VirtualMachine& machine, const DataTimeListener& listener)
+      : machine_{machine}, listener_{listener}, pipeline_{std::make_unique<Pipeline>(cell)}, predictor_{cell} {
     pipeline_->core().add_lobes(predictor_.nominal().diagram);
   }
 
@@ -30,7 +29,8 @@ class DataTimeMonitor {
   }
 
   void hear(const CanFrame& frame) {
-    pipeline_->feed(frame);
+    const bool heard = pipeline_->feed(frame);
+    if (heard && listener_.on_frame) listener_.on_frame(*pipeline_);
     hand_over();
   }
 
@@ -54,12 +54,14 @@ class DataTimeMonitor {
   void hand_over() {
     for (const Output& output : pipeline_->core().outputs()) {
       heard_.add(output, machine_.origin_ns());
+      if (listener_.on_output) listener_.on_output(output, pipeline_->core());
       if (output.type == Output::Type::correction) machine_.receive(output.correction);
     }
     pipeline_->core().clear_outputs();
   }
 
   VirtualMachine& machine_;
+  const DataTimeListener& listener_;
   std::unique_ptr<Pipeline> pipeline_;
   Predictor predictor_;
   PredictionPace pace_;
@@ -79,8 +81,9 @@ void Heard::add(const Output& output, std::int64_t origin_ns) {
                    status.state, status.chatter_frequency_hz});
 }
 
-Heard run_in_data_time(const Cell& cell, VirtualMachine& machine, const std::function<void(double)>& progress) {
-  DataTimeMonitor monitor{cell, machine};
+Heard run_in_data_time(const Cell& cell, VirtualMachine& machine, const std::function<void(double)>& progress,
+                       const DataTimeListener& listener) {
+  DataTimeMonitor monitor{cell, machine, listener};
   std::int64_t next_tick_ns = machine.origin_ns() + kTick_ns;
   const double duration = machine.duration();
   while (!machine.ended()) {

@@ -8,6 +8,7 @@
 
 #include "drivers/files/cell.hpp"
 #include "rt/signals.hpp"
+#include "tools/pipeline.hpp"
 #include "tools/plot_replay.hpp"
 #include "tools/virtual_machine.hpp"
 
@@ -22,7 +23,14 @@ struct Heard {
   void add(const Output& output, std::int64_t origin_ns);
 };
 
+// Whom to tell of a run besides; what is empty is not told.
+struct DataTimeListener {
+  std::function<void(const Pipeline&)> on_frame;              // a frame brought samples or speed: see decoded()
+  std::function<void(const Output&, const Core&)> on_output;  // what was decided, in order
+};
+
 // Runs the machine to its end. cell.mode says what becomes of corrections. `progress` is told the share that is done.
-Heard run_in_data_time(const Cell& cell, VirtualMachine& machine, const std::function<void(double)>& progress = {});
+Heard run_in_data_time(const Cell& cell, VirtualMachine& machine, const std::function<void(double)>& progress = {},
+                       const DataTimeListener& listener = {});
 
 }  // namespace stillcut

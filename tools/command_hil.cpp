@@ -134,7 +134,6 @@ HilRun run_live(const Cell& cell, const Scenario& scenario, const HilOptions& wa
   options.record = wanted.record;
   options.cell_records = wanted.live;
   options.audit = wanted.audit;
-  options.telemetry = wanted.live;
   options.on_output = [&](const Output& output) {  // corrections come over LCM, as to a real controller
     if (output.type != Output::Type::correction) inbox.add(output);
   };

@@ -25,6 +25,7 @@ int run_stillcut(int argc, char** argv) {
   add_patterns_command(app);
   add_doctor_command(app);
   add_echo_command(app);
+  add_export_command(app);
   add_fit_command(app);
   add_hil_command(app);
   add_hz_command(app);
@@ -34,6 +35,8 @@ int run_stillcut(int argc, char** argv) {
   add_plant_command(app);
   add_refine_command(app);
   add_replay_command(app);
+  add_report_command(app);
+  add_scope_command(app);
   add_simulate_command(app);
   add_stability_command(app);
   add_surface_command(app);

@@ -145,7 +145,7 @@ void LiveLoop::show() noexcept {
   constexpr int kTicksApart = 5;
   if (!std::exchange(handed_over_, false) && --ticks_to_show_ > 0) return;
   ticks_to_show_ = kTicksApart;
-  channels_.view.publish(view_of(pipeline_));
+  channels_.view.publish(view_of(pipeline_.core(), pipeline_.decoder().counters()));
 }
 
 // Playback knows of a silence only what is recorded of it. Before the first frame there is none.

@@ -7,14 +7,13 @@
 
 namespace stillcut {
 
-LoopView view_of(const Pipeline& pipeline) noexcept {
-  const Core& core = pipeline.core();
+LoopView view_of(const Core& core, const DecoderCounters& decoder) noexcept {
   LoopView view;
   view.now_ns = core.now_ns();
   view.mode = core.mode();
   view.monitor = core.view();
   view.core = core.counters();
-  view.decoder = pipeline.decoder().counters();
+  view.decoder = decoder;
   view.axial_depth = core.axial_depth();
   view.feed_direction = core.feed_direction();
   view.margin = core.predicted_margin();

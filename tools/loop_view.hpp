@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "tools/pipeline.hpp"
+#include "drivers/can/decoder.hpp"
+#include "rt/core.hpp"
 
 namespace stillcut {
 
@@ -22,7 +23,7 @@ struct LoopView {
   double predicted_chatter_hz = 0.0;  // where the lobes expect it at the present speed; NaN unknown
 };
 
-// Real-time: no allocation, no lock, no system call.
-LoopView view_of(const Pipeline& pipeline) noexcept;
+// Real-time: no allocation, no lock, no system call. decoder: the counters of the frames that went in.
+LoopView view_of(const Core& core, const DecoderCounters& decoder) noexcept;
 
 }  // namespace stillcut

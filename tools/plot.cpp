@@ -215,14 +215,11 @@ void draw_texts(Canvas& canvas, const View& view, const Panel& panel) {
   }
 }
 
-}  // namespace
-
-void write_figure(const Figure& figure, const std::filesystem::path& file) {
-  Canvas canvas(file, figure.width, figure.height);
+void draw_figure(const Figure& figure, Canvas& canvas) {
   double top = kTop;
   if (!figure.title.empty()) canvas.text(kLeft, top += 14, figure.title, {.size = kLarge, .bold = true});
   if (!figure.subtitle.empty()) canvas.text(kLeft, top += 24, figure.subtitle, {.size = kMiddle, .color = kFrame});
-  top += 10;
+  top += figure.title.empty() ? -kBetween : 10;  // nothing for the panels to stand off from
 
   double shares = 0.0;
   bool with_scale = false;
@@ -262,6 +259,20 @@ void write_figure(const Figure& figure, const std::filesystem::path& file) {
     top = bottom + (shows_axis(p) ? kBottom : 0.0);
   }
   canvas.finish();
+}
+
+}  // namespace
+
+void write_figure(const Figure& figure, const std::filesystem::path& file) {
+  Canvas canvas(file, figure.width, figure.height);
+  draw_figure(figure, canvas);
+}
+
+std::string figure_bytes(const Figure& figure, Format format) {
+  std::string bytes;
+  Canvas canvas(bytes, format, figure.width, figure.height);
+  draw_figure(figure, canvas);
+  return bytes;
 }
 
 }  // namespace stillcut::plot

@@ -120,4 +120,8 @@ void check_picture_name(const std::filesystem::path& file);
 // Draws to `file`, .svg or .png by its name. Throws InputError for another name or a file that cannot be written.
 void write_figure(const Figure& figure, const std::filesystem::path& file);
 
+// The same into bytes, of an SVG or a PNG file, to be part of a page. Throws InputError.
+enum class Format { svg, png };
+[[nodiscard]] std::string figure_bytes(const Figure& figure, Format format);
+
 }  // namespace stillcut::plot

@@ -25,6 +25,11 @@ cairo_surface_t* open_surface(const std::filesystem::path& file, bool png, int w
   return cairo_image_surface_create(CAIRO_FORMAT_RGB24, scaled(width), scaled(height));
 }
 
+cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
 }  // namespace
 
 void check_picture_name(const std::filesystem::path& file) { (void)is_png(file); }
@@ -34,8 +39,22 @@ Canvas::Canvas(const std::filesystem::path& file, int width, int height)
       png_{is_png(file)},
       surface_{open_surface(file, png_, width, height)},
       cairo_{cairo_create(surface_.get())} {
+  begin(width, height);
+}
+
+Canvas::Canvas(std::string& bytes, Format format, int width, int height)
+    : file_{"picture"},
+      png_{format == Format::png},
+      bytes_{&bytes},
+      surface_{png_ ? open_surface({}, true, width, height)
+                    : cairo_svg_surface_create_for_stream(append_bytes, &bytes, width, height)},
+      cairo_{cairo_create(surface_.get())} {
+  begin(width, height);
+}
+
+void Canvas::begin(int width, int height) {
   if (cairo_status(cairo_.get()) != CAIRO_STATUS_SUCCESS)
-    throw InputError(file.string(), 0,
+    throw InputError(file_.string(), 0,
                      std::string("cannot write the picture: ") + cairo_status_to_string(cairo_status(cairo_.get())));
   if (png_) cairo_scale(cairo_.get(), kPngScale, kPngScale);
   cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
@@ -44,7 +63,10 @@ Canvas::Canvas(const std::filesystem::path& file, int width, int height)
 
 void Canvas::finish() {
   cairo_surface_flush(surface_.get());
-  cairo_status_t status = png_ ? cairo_surface_write_to_png(surface_.get(), file_.c_str()) : CAIRO_STATUS_SUCCESS;
+  cairo_status_t status = CAIRO_STATUS_SUCCESS;
+  if (png_)
+    status = bytes_ != nullptr ? cairo_surface_write_to_png_stream(surface_.get(), append_bytes, bytes_)
+                               : cairo_surface_write_to_png(surface_.get(), file_.c_str());
   cairo_surface_finish(surface_.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface_.get());
   if (status != CAIRO_STATUS_SUCCESS)

@@ -26,6 +26,9 @@ class Canvas {
   // Throws InputError for a name that ends neither in .svg nor in .png, and for a file that cannot be written.
   Canvas(const std::filesystem::path& file, int width, int height);
 
+  // Into `bytes`, which must outlive the canvas, instead of a file.
+  Canvas(std::string& bytes, Format format, int width, int height);
+
   // Writes the file. Throws InputError when that fails.
   void finish();
 
@@ -65,11 +68,13 @@ class Canvas {
     void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
     void operator()(cairo_t* context) const { cairo_destroy(context); }
   };
+  void begin(int width, int height);
   void set_color(Color color, double opacity);
   void set_font(double size, bool bold);
 
   std::filesystem::path file_;
   bool png_;
+  std::string* bytes_ = nullptr;  // instead of the file
   std::unique_ptr<cairo_surface_t, Close> surface_;
   std::unique_ptr<cairo_t, Close> cairo_;
 };

@@ -7,13 +7,15 @@
 #include <cstring>
 
 #include "drivers/can/candump_log.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 
 namespace stillcut {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{20};
 constexpr double kFlushEvery_s = 0.4;  // with the poll and the disk's own time: the last second at most is lost
-constexpr double kTryAgain_s = 5.0;    // after the disk refused
+constexpr double kTellTimesEvery_s = 1.0;
+constexpr double kTryAgain_s = 5.0;  // after the disk refused
 constexpr std::size_t kMostWaiting = 4096;
 
 double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -87,6 +89,7 @@ void Recorder::finish() {
   thread_.join();
   drain();
   end_silence();
+  note_loop_times();
   flush(steady_s());
   folder_.close(steady_s());
   counters_.bytes = folder_.bytes_written();
@@ -195,6 +198,12 @@ void Recorder::note_lost() {
   write_message(newest_ns_, kRecordingChannel, text_bytes(text));
 }
 
+// Where the loop's time went until now, for who reads the recording.
+void Recorder::note_loop_times() {
+  if (folder_.is_open() && newest_ns_ != 0)
+    write_message(newest_ns_, kLatencyChannel, encode(latency_report(channels_.times, realtime_ns())));
+}
+
 void Recorder::flush(double now_s) {
   if (!folder_.is_open()) {
     if (now_s < next_try_s_) return;
@@ -206,6 +215,10 @@ void Recorder::flush(double now_s) {
   }
   end_silence();
   note_lost();
+  if (now_s >= next_times_s_) {
+    next_times_s_ = now_s + kTellTimesEvery_s;
+    note_loop_times();
+  }
   const bool good = folder_.write_can(can_) && folder_.write_lcm(lcm_) && folder_.flush(now_s);
   (good ? counters_.frames : counters_.lost) += frames_held_;
   frames_held_ = 0;

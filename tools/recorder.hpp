@@ -64,6 +64,7 @@ class Recorder {
   void begin(double now_s);
   void stop_recording(double now_s);
   void note_lost();
+  void note_loop_times();
 
   LoopChannels& channels_;
   std::string interface_;
@@ -75,7 +76,7 @@ class Recorder {
   std::int64_t newest_ns_ = 0;  // data time
   std::int64_t lost_told_ = 0;
   std::uint64_t refused_seen_ = 0;
-  double next_try_s_ = 0.0, next_flush_s_ = 0.0;
+  double next_try_s_ = 0.0, next_flush_s_ = 0.0, next_times_s_ = 0.0;
 
   std::mutex mutex_;
   std::vector<Message> messages_;

@@ -69,6 +69,9 @@ std::optional<RobotPlayback::Waiting> RobotPlayback::read(LcmLogReader& log, con
   };
   if (event.channel == kRobotStateChannel) return good(decode_robot_state(event.data, stamp_ns));
   if (event.channel == kRobotAckChannel) return good(decode_correction_ack(event.data, stamp_ns));
+  if (event.channel == kLatencyChannel) {
+    if (auto times = decode_latency(event.data); times.ok()) loop_times_ = std::move(times.value);
+  }
   if (!is_recording_) {
     if (event.channel == kRobotPathChannel) return good(decode_robot_path(event.data, stamp_ns));
     return std::nullopt;
@@ -116,6 +119,7 @@ void RobotPlayback::feed(const Waiting& waiting, Core& core, const std::function
 }
 
 void RobotPlayback::feed_message(const RobotMessage& message, Core& core) {
+  if (listener_) listener_(message);
   if (const auto* state = std::get_if<RobotState>(&message)) {
     core.add_robot_state(*state);
     if (is_recording_ || !pace_.due(*state)) return;

@@ -14,6 +14,7 @@
 
 #include "drivers/lcm/lcm_log.hpp"
 #include "drivers/lcm/recording_messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "rt/core.hpp"
 #include "tools/predictor.hpp"
 
@@ -23,6 +24,9 @@ class RobotPlayback {
  public:
   // Logs in the order of their times; none: no robot. Throws InputError.
   RobotPlayback(std::vector<std::filesystem::path> logs, double offset_s, Predictor& predictor);
+
+  // Told of each state and acknowledgement as it goes into the core; before the first is fed.
+  void set_listener(std::function<void(const RobotMessage&)> listener) { listener_ = std::move(listener); }
 
   // Hands over all whose time has come; `after_each` is told of each, as the core's outputs are to be taken.
   void feed_until(std::int64_t stamp_ns, Core& core, const std::function<void()>& after_each);
@@ -38,6 +42,9 @@ class RobotPlayback {
   [[nodiscard]] std::int64_t lobes_missing() const { return lobes_missing_; }
   // Events and corrections that the live run published, as bytes, in their order; all of them after finish().
   [[nodiscard]] const std::vector<MessageBytes>& published() const { return published_; }
+
+  // Where the live loop's time went, by the newest message of it; nothing where the recording holds none.
+  [[nodiscard]] const std::optional<LatencyReport>& loop_times() const { return loop_times_; }
 
  private:
   struct Waiting {
@@ -60,6 +67,8 @@ class RobotPlayback {
   std::optional<Waiting> waiting_;
   std::map<std::string, std::optional<LobeDiagram>> computed_;  // by question; a robot that stands asks the same
   std::vector<MessageBytes> published_;
+  std::function<void(const RobotMessage&)> listener_;
+  std::optional<LatencyReport> loop_times_;
   std::int64_t bad_ = 0, lobes_missing_ = 0, lost_ = 0;
 };
 

@@ -9,7 +9,7 @@ fail() { echo "units: $*" >&2; exit 1; }
 
 # Verified at the places where they are installed, in as far as this machine has them: here the programs are elsewhere.
 for unit in "$units"/*.service; do
-  sed -e "s|/usr/bin/stillcutd|$programs/stillcutd|; s|/usr/lib/stillcut/|$units/|; s|/usr/sbin/ip|$(command -v ip)|" "$unit" \
+  sed -e "s|/usr/bin/stillcut|$programs/stillcut|; s|/usr/lib/stillcut/|$units/|; s|/usr/sbin/ip|$(command -v ip)|" "$unit" \
     > "$work/$(basename "$unit")"
 done
 verify() {
@@ -18,15 +18,17 @@ verify() {
   [ -z "$said" ] || fail "verify says: $said"
 }
 verify "$work"/stillcutd@cell.service "$work"/stillcut-can@can0.service "$work"/stillcut-vcan@vcan0.service \
-  "$work"/stillcut-multicast.service
+  "$work"/stillcut-scope@cell.service "$work"/stillcut-multicast.service
 
 sed -i 's/^WatchdogSec/WatchDogSec/' "$work/stillcutd@.service"  # the proof that a slip is found
 if (verify "$work"/stillcutd@cell.service) 2> /dev/null; then fail 'a misspelt key passed'; fi
 sed -i 's/^WatchDogSec/WatchdogSec/' "$work/stillcutd@.service"
 
-rate() { systemd-analyze security --offline=true --threshold=20 "$work/stillcutd@.service"; }
-rate > "$work/rated" || fail "exposure: $(tail -n 1 "$work/rated")"
-tail -n 1 "$work/rated"
+rate() { systemd-analyze security --offline=true --threshold=20 "$work/${1:-stillcutd@.service}"; }
+for unit in stillcut-scope@.service stillcutd@.service; do
+  rate $unit > "$work/rated" || fail "exposure of $unit: $(tail -n 1 "$work/rated")"
+  tail -n 1 "$work/rated"
+done
 sed -i '/^SystemCallFilter\|^CapabilityBoundingSet/d' "$work/stillcutd@.service"
 ! rate > /dev/null || fail 'a service without system-call filter and with every capability passed'
 grep -q CAP_NET_ADMIN "$units/stillcutd@.service" && fail 'CAP_NET_ADMIN is not to be had' || true

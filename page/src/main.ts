@@ -1,0 +1,211 @@
+// The page: hears the stream, hands each message to its panels, draws once a frame of the screen.
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import { rebuildCharts } from './chart';
+import { Connection } from './connection';
+import { byId, make, setClass, setText } from './dom';
+import { quantity, sentence } from './format';
+import { healthPanel } from './health_panel';
+import { bindKeys } from './keys';
+import { latencyPanel } from './latency_panel';
+import { lobesPanel } from './lobes_panel';
+import { logPanel } from './log_panel';
+import { forgetLook } from './look';
+import { player as makePlayer, type Player } from './player';
+import { fetchAbout, type About, type Message, type State } from './protocol';
+import { spectrumPanel } from './spectrum_panel';
+import { faceOf, stateWords, symbol } from './states';
+import { statePanel } from './state_panel';
+import { trendPanel } from './trend_panel';
+
+const staleMs = 1000; // twenty states missed
+const watchMs = 200;
+const peekMs = 400;
+const sources: Record<string, string> = { daemon: 'live', recording: 'recording', simulation: 'simulation' };
+
+function start(about: About): void {
+  document.body.dataset['title'] = about.title;
+  setText(byId('title'), about.title);
+  setText(byId('source'), `${sources[about.source] ?? about.source}: ${about.where}`);
+  const live = about.source === 'daemon';
+
+  const top = statePanel();
+  const spectrum = spectrumPanel();
+  const lobes = lobesPanel(about);
+  const trend = trendPanel(about);
+  const log = logPanel(about);
+  const health = healthPanel();
+  const latency = latencyPanel();
+  const calm = matchMedia('(prefers-reduced-motion: reduce)');
+  let state: State | null = null;
+  let freshState = false;
+  let stale = false;
+  let player: Player | null = null;
+  const speed = (): number => player?.speed ?? 1;
+
+  const receive = (message: Message): void => {
+    switch (message.kind) {
+      case 'state':
+        state = message.value;
+        freshState = true;
+        lobes.setState(state);
+        spectrum.setChatter(state.chatter_hz);
+        trend.add(state, speed());
+        player?.moved(state.t);
+        break;
+      case 'spectrum':
+        spectrum.show(message.value, speed());
+        break;
+      case 'lobes':
+        lobes.show(message.value);
+        break;
+      case 'event':
+        log.addEvent(message.value);
+        trend.addEvent(message.value);
+        break;
+      case 'correction':
+        log.addCorrection(message.value);
+        trend.addCorrection(message.value);
+        break;
+      case 'health':
+        health.show(message.value);
+        break;
+      case 'latency':
+        latency.show(message.value);
+        break;
+      case 'end':
+        player?.ended();
+        connection.close();
+        break;
+    }
+  };
+
+  /** Another server, or another recording, at the same address: everything begins anew. */
+  const reopened = async (): Promise<void> => {
+    const now = await fetchAbout().catch(() => about);
+    const same = (['title', 'source', 'where', 'version'] as const).every((key) => now[key] === about[key]);
+    if (!same) location.reload();
+  };
+  const address = (): string =>
+    player ? `api/stream?from=${player.position_s.toFixed(3)}&speed=${player.speed}` : 'api/stream';
+  const connection = new Connection(address, receive, () => void reopened());
+
+  const listen = (): void => {
+    const wanted = !document.hidden && (!player || player.playing);
+    if (wanted) connection.open();
+    else connection.close();
+  };
+  /** Paused: hears for a moment, to show the place that was sought. */
+  const peek = (): void => {
+    connection.open();
+    window.setTimeout(listen, peekMs);
+  };
+  if (!live) {
+    player = makePlayer(about, (cleared) => {
+      if (cleared) for (const panel of [spectrum, lobes, trend, log]) panel.reset();
+      if (cleared && player && !player.playing) peek();
+      else listen();
+    });
+  }
+
+  const watch = (): void => {
+    const nowMs = performance.now();
+    connection.watch(nowMs);
+    const silentMs = nowMs - connection.heardMs;
+    stale = connection.wanted && silentMs > staleMs;
+    document.body.classList.toggle('stale', stale);
+    const ago = `last heard ${quantity(silentMs / 1000, 0, 's')} ago`;
+    const words = stale ? (connection.lost ? `connection lost, ${ago}` : `no data, ${ago}`)
+      : live || player?.playing ? (live ? 'connected' : 'playing') : 'paused';
+    setText(byId('connection'), connection.refused ? `${words}; ${connection.refused} messages not understood` : words);
+    setClass(byId('connection'), `chip${stale ? ' lost' : ''}`);
+    if (stale) top.showNoData(`${sentence(words)}.${state ? ` The last state was: ${state.state}.` : ''}`);
+  };
+  window.setInterval(() => {
+    if (!document.hidden) watch();
+  }, watchMs);
+
+  const frame = (nowMs: number): void => {
+    requestAnimationFrame(frame); // the browser stops calling while the page is hidden
+    if (freshState && state && !stale) {
+      top.show(state);
+      freshState = false;
+    } else if (freshState) {
+      watch(); // heard again
+    }
+    spectrum.frame(nowMs, !calm.matches);
+    lobes.frame();
+    trend.frame(nowMs);
+    log.frame();
+    latency.frame();
+  };
+
+  const restyle = (): void => {
+    forgetLook();
+    rebuildCharts();
+    spectrum.restyle();
+  };
+  bindKeys(player, bindTheme(restyle));
+  window.addEventListener('resize', forgetLook);
+  document.addEventListener('visibilitychange', listen);
+  for (const word of stateWords) {
+    byId('help-states').append(make('li', '', symbol(word) as unknown as Node, make('strong', '', sentence(word)), make('span', '', faceOf(word).text)));
+  }
+  listen();
+  requestAnimationFrame(frame);
+}
+
+/** The theme: the system's, unless the button chose one. Returns what changes it. */
+function bindTheme(restyle: () => void): () => void {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  const chosen = stored('theme');
+  const root = document.documentElement;
+  const apply = (): void => {
+    const isDark = root.dataset['theme'] ? root.dataset['theme'] === 'dark' : dark.matches;
+    setText(byId('theme'), isDark ? 'Light' : 'Dark');
+    restyle();
+  };
+  if (chosen === 'dark' || chosen === 'light') root.dataset['theme'] = chosen;
+  const toggle = (): void => {
+    const isDark = root.dataset['theme'] ? root.dataset['theme'] === 'dark' : dark.matches;
+    root.dataset['theme'] = isDark ? 'light' : 'dark';
+    store('theme', root.dataset['theme']);
+    apply();
+  };
+  dark.addEventListener('change', apply);
+  byId('theme').addEventListener('click', toggle);
+  apply();
+  return toggle;
+}
+
+// A browser may refuse to keep anything: then the choice lasts as long as the page.
+function stored(key: string): string | null {
+  try {
+    return localStorage.getItem(key);
+  } catch {
+    return null;
+  }
+}
+function store(key: string, value: string): void {
+  try {
+    localStorage.setItem(key, value);
+  } catch {
+    return;
+  }
+}
+
+/** The page may be loaded before its server answers, or from a browser's store. */
+async function begin(): Promise<void> {
+  let about: About | null = null;
+  while (!about) {
+    try {
+      about = await fetchAbout();
+    } catch (error) {
+      setText(byId('state-reason'), `The server does not answer (${String(error)}); it is asked again every 2 s.`);
+      await new Promise((resolve) => window.setTimeout(resolve, 2000));
+    }
+  }
+  start(about);
+}
+
+void begin();
