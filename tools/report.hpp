@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/lcm/messages.hpp"
+#include "drivers/lcm/telemetry_messages.hpp"
 #include "dsp/numbers.hpp"
 #include "models/lobe_diagram.hpp"
 #include "rt/signals.hpp"
