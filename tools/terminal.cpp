@@ -120,13 +120,14 @@ Terminal::Terminal(bool plain_ascii) : state_{std::make_unique<State>()} {
   if (locale == nullptr || std::string_view(locale) == "C" || std::string_view(locale) == "POSIX")
     locale = std::setlocale(LC_CTYPE, "C.UTF-8");
   s.ascii = plain_ascii || locale == nullptr || MB_CUR_MAX < 3;
+  s.catch_signals();  // first: ncurses leaves alone what is not at its default
   s.screen = newterm(nullptr, stdout, stdin);
   if (s.screen == nullptr) {
+    s.release_signals();
     const char* name = std::getenv("TERM");
     throw ComponentError("the terminal '" + std::string(name != nullptr ? name : "") +
                          "' is not known here; try TERM=xterm, or --once");
   }
-  s.catch_signals();
   set_escdelay(25);
   cbreak();
   noecho();

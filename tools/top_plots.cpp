@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPlotLabel = 7;  // columns left of the picture
 constexpr double kShownDb = 60.0;
-constexpr int kPlotLeast = 4;
+constexpr int kPlotLeast = 5;
 
 // Columns of `heights` from 0 to 1, as `rows` rows of `columns` characters.
 std::vector<std::string> bars(const std::vector<double>& heights, int rows) {

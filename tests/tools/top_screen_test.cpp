@@ -114,7 +114,7 @@ TEST(TopScreen, EveryMatterIsOnSomePageOfASmallTerminalAndOnTheOneOfALargeOne) {
                                      "! LCM to here, not readable 5",
                                      "OUT OF TIME",
                                      "p99.9",
-                                     "decision        12.5     40.0     99.5   4700.3",
+                                     "decision        12.5     40.0     99.5   4700.2",
                                      "Spread"};
   TopScene scene = scene_at();
   scene.unreadable = 5;
