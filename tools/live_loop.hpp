@@ -43,13 +43,13 @@ struct LoopChannels {
   // Whether somebody takes what goes into the core, and the frames of it; their rings are most of the memory here.
   explicit LoopChannels(bool recorded_too = true, bool watched_too = true)
       : recorded{recorded_too ? std::size_t{32768} : std::size_t{1}},
-        watched{watched_too ? std::size_t{8192} : std::size_t{1}} {}
+        watched{watched_too ? std::size_t{1024} : std::size_t{1}} {}
 
   Snapshot<LobesAnswer> lobes, ahead;  // of the present posture, along the announced path
   Ring<RobotMessage> messages{256};
   Ring<Output> outputs{4096};
   Ring<CoreInput> recorded;  // ten seconds of a triaxial 25.6 kHz sensor
-  Ring<CanFrame> watched;    // three seconds of it
+  Ring<CanFrame> watched;    // 0.4 s of it; small, so that it stays in the cache
   Snapshot<LoopView> view;
   Snapshot<LobeDiagram> shown_lobes;
   std::atomic<std::int64_t> origin_ns{0};  // stamp of the first frame, time zero of events; set before the first output

@@ -53,7 +53,8 @@ export class Chart {
 /** The digits that tell one tick from the next. */
 function decimals(splits: number[]): number {
   const step = Math.abs((splits[1] ?? 1) - (splits[0] ?? 0));
-  return step >= 1 ? 0 : Math.min(Math.ceil(-Math.log10(step) - 1e-9) + (/[1-9]5/.test(step.toPrecision(2)) ? 1 : 0), 4);
+  const told = (digits: number): boolean => Math.abs(step - Number(step.toFixed(digits))) < 1e-6 * step;
+  return [0, 1, 2, 3].find(told) ?? 4;
 }
 
 export function rebuildCharts(): void {
@@ -78,7 +79,7 @@ function axis(look: Look, label: string, more: uPlot.Axis = {}): uPlot.Axis {
 }
 
 /** Width of every vertical axis in root ems, label included: charts below each other line up. */
-export const sideEms = 4.6;
+export const sideEms = 5.1;
 /** Room at a chart's right, for half a label. */
 export const rightEms = 1.6;
 

@@ -4,10 +4,9 @@ import { kinds, readMessage, type Message } from './protocol';
 
 const firstRetryMs = 500;
 const lastRetryMs = 2000;
-const silenceMs = 3000; // a half-open connection says nothing, neither data nor an error
 
 export class Connection {
-  /** When something was last heard, on the clock of performance.now(). */
+  /** When a state was last heard, on the clock of performance.now(): all else may come without it, and would deceive. */
   heardMs = performance.now();
   /** Whether the stream is meant to be open. */
   wanted = false;
@@ -20,9 +19,13 @@ export class Connection {
   private openedMs = 0;
   private retryMs = firstRetryMs;
 
-  /** `address` is asked at each attempt, so that a recording goes on from where it is. */
+  /**
+   * `address` is asked at each attempt, so that a recording goes on from where it is. After `silenceMs` without a state
+   * the stream is opened anew: a half-open connection says nothing, neither data nor an error.
+   */
   constructor(
     private readonly address: () => string,
+    private readonly silenceMs: number,
     private readonly receive: (message: Message) => void,
     private readonly reopened: () => void,
   ) {}
@@ -44,7 +47,7 @@ export class Connection {
 
   /** To be called a few times a second. */
   watch(nowMs: number): void {
-    if (this.source && nowMs - Math.max(this.heardMs, this.openedMs) > silenceMs) this.retry();
+    if (this.source && nowMs - Math.max(this.heardMs, this.openedMs) > this.silenceMs) this.retry();
   }
 
   private connect(): void {
@@ -53,7 +56,6 @@ export class Connection {
     this.openedMs = performance.now();
     for (const kind of kinds) {
       source.addEventListener(kind, (event) => {
-        this.heardMs = performance.now();
         this.retryMs = firstRetryMs;
         if (this.lost) {
           this.lost = false;
@@ -66,6 +68,7 @@ export class Connection {
           this.refused += 1;
           return;
         }
+        if (kind === 'state') this.heardMs = performance.now();
         this.receive(message);
       });
     }

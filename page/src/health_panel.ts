@@ -12,6 +12,7 @@ export function healthPanel(): { show(health: Health): void } {
   let doubts = '';
   return {
     show(health) {
+      byId('sensors').closest('.panel')?.classList.remove('empty');
       const { sensors } = health;
       const off = (s: Health['sensors'][number]): boolean =>
         Math.abs(s.rate_error_percent ?? 0) > rateErrorMarked_percent || s.rate_hz === 0;
@@ -24,16 +25,20 @@ export function healthPanel(): { show(health: Health): void } {
         ['samples saturated', ...sensors.map((s) => lossy(s.saturated))],
         ['samples not finite', ...sensors.map((s) => lossy(s.not_finite))],
       ]);
-      fillRows(byId('hops'), health.hops.map((h) => [h.hop, lossy(h.lost)]));
+      const lossyFirst = [...health.hops].sort((a, b) => Number(Boolean(b.lost)) - Number(Boolean(a.lost)));
+      fillRows(byId('hops'), lossyFirst.map((h) => [h.hop, lossy(h.lost)]));
       if (doubts !== health.doubts.join()) {
         doubts = health.doubts.join();
         byId('doubts').replaceChildren(...health.doubts.map((d) => make('li', 'marked', `⚠\u00a0${d}`)));
       }
-      const lost = [...health.sensors.map((s) => s.frames_lost), ...health.hops.map((h) => h.lost)]
-        .reduce<number>((sum, n) => sum + (n ?? 0), 0);
-      setText(byId('health-summary'), health.doubts.length || lost
-        ? [health.doubts.length ? 'signals in doubt' : '', lost ? `${fixed(lost, 0)} lost on the way` : ''].filter(Boolean).join(', ')
-        : 'nothing lost, no doubts');
+      const sum = (counts: (number | null)[]): number => counts.reduce<number>((total, n) => total + (n ?? 0), 0);
+      const missing = sum(sensors.map((s) => s.frames_lost));
+      const lost = sum(health.hops.map((h) => h.lost));
+      setText(byId('health-summary'), [
+        health.doubts.length ? 'signals in doubt' : '',
+        missing ? `${fixed(missing, 0)} frames missing` : '',
+        lost ? `${fixed(lost, 0)} lost on the way` : '',
+      ].filter(Boolean).join(', ') || 'nothing lost, no doubts');
     },
   };
 }

@@ -33,6 +33,7 @@ export function bindKeys(player: Player | null, toggleTheme: () => void): void {
       case 'Home': return scrolls ? undefined : () => player.seek(0);
       case 'n': return () => player.seekMark(1);
       case 'p': return () => player.seekMark(-1);
+      case '=':
       case '+': return () => player.faster(1);
       case '-': return () => player.faster(-1);
       default: return undefined;

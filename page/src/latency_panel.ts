@@ -6,6 +6,8 @@ import { fixed, microseconds } from './format';
 import { look, rimmedText } from './look';
 import type { Latency } from './protocol';
 
+type Histogram = Latency['histograms'][number];
+
 export interface LatencyPanel {
   show(latency: Latency): void;
   frame(): void;
@@ -18,12 +20,14 @@ export function latencyPanel(): LatencyPanel {
   let edges: [number, number] = [1, 1000]; // µs
   let top = 10;
 
-  const histogram = (): Latency['histograms'][number] | undefined =>
-    latest?.histograms.find((h) => h.stage === choice.value) ?? latest?.histograms[0];
+  const histogram = (): Histogram | undefined => {
+    const drawable = (latest?.histograms ?? []).filter((h) => edge(h, 0) > 0 && Number.isFinite(edge(h, h.counts.length)));
+    return drawable.find((h) => h.stage === choice.value) ?? drawable[0];
+  };
 
   const bars = (u: uPlot): void => {
     const h = histogram();
-    if (!h || h.first_us === null || !h.per_octave) return;
+    if (!h) return;
     const { ctx, bbox } = u;
     ctx.save();
     ctx.beginPath();
@@ -32,9 +36,9 @@ export function latencyPanel(): LatencyPanel {
     ctx.fillStyle = look().data;
     const foot = bbox.top + bbox.height;
     h.counts.forEach((count, i) => {
-      if (!count || h.first_us === null || !h.per_octave) return;
-      const from = u.valToPos(h.first_us * 2 ** (i / h.per_octave), 'x', true);
-      const to = u.valToPos(h.first_us * 2 ** ((i + 1) / h.per_octave), 'x', true);
+      if (!count) return;
+      const from = u.valToPos(edge(h, i), 'x', true);
+      const to = u.valToPos(edge(h, i + 1), 'x', true);
       const y = u.valToPos(count, 'y', true);
       ctx.fillRect(from, y, Math.max(to - from - devicePixelRatio, 1), foot - y);
     });
@@ -101,6 +105,7 @@ export function latencyPanel(): LatencyPanel {
     frame() {
       if (!fresh || !latest) return;
       fresh = false;
+      byId('stages').closest('.panel')?.classList.remove('empty');
       const names = latest.histograms.map((h) => h.stage);
       if (names.join() !== [...choice.options].map((o) => o.value).join()) {
         const kept = choice.value;
@@ -115,20 +120,25 @@ export function latencyPanel(): LatencyPanel {
         fixed(s.count, 0),
       ]));
       const h = histogram();
-      if (!h || h.first_us === null || !h.per_octave) return;
+      if (!h) return;
       const first = h.counts.findIndex((c) => c);
       let last = h.counts.length - 1;
       while (last > 0 && !h.counts[last]) last--;
       if (first >= 0) {
         const longest = latest.stages.find((s) => s.stage === h.stage)?.max_us ?? 0;
-        const low = h.first_us * 2 ** (first / h.per_octave);
-        const high = Math.max(h.first_us * 2 ** ((last + 1) / h.per_octave), longest);
+        const low = edge(h, first);
+        const high = Math.max(edge(h, last + 1), longest);
         edges = [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high))];
         top = 2 * 10 ** Math.ceil(Math.log10(Math.max(...h.counts.map((c) => c ?? 0), 1)));
       }
       chart.show([edges, [1, 1]]);
     },
   };
+}
+
+/** Where bucket `i` begins, µs; NaN where the histogram does not say. */
+function edge(h: Histogram, i: number): number {
+  return (h.first_us ?? NaN) * 2 ** (i / (h.per_octave || NaN));
 }
 
 function superscript(n: number): string {

@@ -6,6 +6,8 @@ import { depth, hertz, niceCeil, percent, quantity } from './format';
 import { look, rimmedText } from './look';
 import type { About, Lobes, State } from './protocol';
 
+const modesTold = 8;
+
 export interface LobesPanel {
   show(lobes: Lobes): void;
   setState(state: State): void;
@@ -120,7 +122,7 @@ export function lobesPanel(about: About): LobesPanel {
         setText(byId('lobes-modes'), modesOf(lobes));
       } else if (fresh) {
         chart.show([[], []]);
-        setText(byId('lobes-modes'), '');
+        setText(byId('lobes-modes'), '–');
       } else if (moved) {
         chart.redraw();
       }
@@ -160,7 +162,9 @@ function caption(lobes: Lobes | null, state: State): string {
 }
 
 function modesOf(lobes: Lobes): string {
-  return lobes.modes.map((m, i) => `${i + 1}: ${hertz(m.hz)}, damping ${percent(m.damping_ratio, 1)}`).join(' · ');
+  const modes = lobes.modes.slice(0, modesTold).map((m) => `${hertz(m.hz)} (${percent(m.damping_ratio, 1)})`);
+  if (lobes.modes.length > modesTold) modes.push(`${lobes.modes.length - modesTold} more`);
+  return modes.join(', ') || '–';
 }
 
 /** The speed of the diagram next to `rpm`, or null outside of it. */

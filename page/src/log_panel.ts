@@ -43,7 +43,7 @@ export function logPanel(about: About): LogPanel {
       const details = [
         c.chatter_hz === null ? '' : `chatter ${hertz(c.chatter_hz)}`,
         c.margin_after === null ? '' : `margin ${percent(c.margin_before, 0, true)} → ${percent(c.margin_after, 0, true)}`,
-        c.confidence_percent === null ? '' : `confidence ${quantity(c.confidence_percent, 0, '%')}`,
+        c.confidence_percent === null || c.kind === 'release' ? '' : `confidence ${quantity(c.confidence_percent, 0, '%')}`,
       ].filter(Boolean);
       const content = [
         make('strong', '', target(c)),

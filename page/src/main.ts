@@ -36,6 +36,7 @@ function start(about: About): void {
   const log = logPanel(about);
   const health = healthPanel();
   const latency = latencyPanel();
+  if (!live) setText(byId('latency-summary'), 'none: no loop runs here');
   const calm = matchMedia('(prefers-reduced-motion: reduce)');
   let state: State | null = null;
   let freshState = false;
@@ -51,10 +52,9 @@ function start(about: About): void {
         lobes.setState(state);
         spectrum.setChatter(state.chatter_hz);
         trend.add(state, speed());
-        player?.moved(state.t);
         break;
       case 'spectrum':
-        spectrum.show(message.value, speed());
+        spectrum.show(message.value);
         break;
       case 'lobes':
         lobes.show(message.value);
@@ -88,7 +88,8 @@ function start(about: About): void {
   };
   const address = (): string =>
     player ? `api/stream?from=${player.position_s.toFixed(3)}&speed=${player.speed}` : 'api/stream';
-  const connection = new Connection(address, receive, () => void reopened());
+  // A server may take its time to go to a place in a recording.
+  const connection = new Connection(address, live ? 3000 : 30000, receive, () => void reopened());
 
   const listen = (): void => {
     const wanted = !document.hidden && (!player || player.playing);
@@ -103,6 +104,7 @@ function start(about: About): void {
   if (!live) {
     player = makePlayer(about, (cleared) => {
       if (cleared) for (const panel of [spectrum, lobes, trend, log]) panel.reset();
+      if (cleared) freshState = false; // of the place that was left
       if (cleared && player && !player.playing) peek();
       else listen();
     });
@@ -114,8 +116,9 @@ function start(about: About): void {
     const silentMs = nowMs - connection.heardMs;
     stale = connection.wanted && silentMs > staleMs;
     document.body.classList.toggle('stale', stale);
-    const ago = `last heard ${quantity(silentMs / 1000, 0, 's')} ago`;
-    const words = stale ? (connection.lost ? `connection lost, ${ago}` : `no data, ${ago}`)
+    const seconds = quantity(silentMs / 1000, 0, 's');
+    const ago = `last heard ${seconds} ago`;
+    const words = stale ? (connection.lost ? `connection lost, ${ago}` : live ? `no data, ${ago}` : `waiting for the recording, ${seconds}`)
       : live || player?.playing ? (live ? 'connected' : 'playing') : 'paused';
     setText(byId('connection'), connection.refused ? `${words}; ${connection.refused} messages not understood` : words);
     setClass(byId('connection'), `chip${stale ? ' lost' : ''}`);
@@ -129,6 +132,7 @@ function start(about: About): void {
     requestAnimationFrame(frame); // the browser stops calling while the page is hidden
     if (freshState && state && !stale) {
       top.show(state);
+      player?.moved(state.t);
       freshState = false;
     } else if (freshState) {
       watch(); // heard again
@@ -149,7 +153,9 @@ function start(about: About): void {
   window.addEventListener('resize', forgetLook);
   document.addEventListener('visibilitychange', listen);
   for (const word of stateWords) {
-    byId('help-states').append(make('li', '', symbol(word) as unknown as Node, make('strong', '', sentence(word)), make('span', '', faceOf(word).text)));
+    byId('help-states').append(
+      make('li', '', symbol(word), make('strong', '', sentence(word)), make('span', '', faceOf(word).text)),
+    );
   }
   listen();
   requestAnimationFrame(frame);

@@ -30,6 +30,7 @@ export function player(about: About, changed: (cleared: boolean) => void): Playe
   let playing = true;
   let atEnd = false;
   let dragged = false;
+  let held = false;
   let timer = 0;
 
   const draw = (): void => {
@@ -63,6 +64,12 @@ export function player(about: About, changed: (cleared: boolean) => void): Playe
 
   range.max = String(duration_s);
   range.addEventListener('input', () => seek(Number(range.value)));
+  range.addEventListener('pointerdown', () => {
+    held = true; // nor does playing pull the thumb away
+  });
+  window.addEventListener('pointerup', () => {
+    held = false;
+  });
   button.addEventListener('click', toggle);
   speeds.addEventListener('change', () => changed(false));
   for (const m of about.marks) {
@@ -88,7 +95,7 @@ export function player(about: About, changed: (cleared: boolean) => void): Playe
       return position_s;
     },
     moved(t) {
-      if (dragged || !playing) return;
+      if (dragged || held || !playing) return;
       position_s = Math.min(Math.max(t, 0), duration_s);
       draw();
     },

@@ -8,7 +8,7 @@ import type { Spectrum } from './protocol';
 import { waterfall } from './waterfall';
 
 export interface SpectrumPanel {
-  show(spectrum: Spectrum, speed: number): void;
+  show(spectrum: Spectrum): void;
   setChatter(hz: number | null): void;
   frame(nowMs: number, smooth: boolean): void;
   reset(): void;
@@ -112,14 +112,14 @@ export function spectrumPanel(): SpectrumPanel {
   new ResizeObserver(() => fall.resize()).observe(byId('waterfall'));
 
   return {
-    show(spectrum, speed) {
+    show(spectrum) {
       const name = String(spectrum.sensor ?? 0);
       if (![...sensor.options].some((o) => o.value === name)) {
         sensor.add(new Option(`sensor ${Number(name) + 1}`, name));
         sensor.hidden = sensor.options.length < 2;
       }
       const { bin_hz, low_db, step_db } = spectrum;
-      if (name !== sensor.value || bin_hz === null || low_db === null || step_db === null) return;
+      if (name !== sensor.value || !bin_hz || bin_hz < 0 || !spectrum.levels.length || low_db === null || step_db === null) return;
       if (frequencies.length !== spectrum.levels.length || frequencies[1] !== bin_hz) {
         frequencies = Array.from(spectrum.levels, (_, k) => k * bin_hz);
         fall.setSpan(span_hz());
@@ -127,7 +127,7 @@ export function spectrumPanel(): SpectrumPanel {
       latest = spectrum;
       fresh = true;
       widen(Float32Array.from(spectrum.levels, (byte) => low_db + step_db * byte));
-      fall.add(spectrum, speed);
+      fall.add(spectrum);
     },
 
     setChatter(hz) {

@@ -28,7 +28,7 @@ export function statePanel(): StatePanel {
     setClass(panel, `panel ${classOf(state)}${faceOf(state).loud ? ' loud' : ''}`);
     if (state !== told) symbol(state, icon);
     setText(byId('state-word'), sentence(state));
-    setText(byId('state-reason'), reason);
+    setText(byId('state-reason'), /^\p{Ll}{2}/u.test(reason) ? sentence(reason) : reason); // not `n = 60 f / k`
     if (state !== told) {
       document.title = `${sentence(state)} · ${document.body.dataset['title'] ?? 'Stillcut'}`;
       setText(announced, `State: ${state}. ${reason}`); // once a change: a reason that counts up is not read aloud

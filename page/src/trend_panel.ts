@@ -26,14 +26,13 @@ export function trendPanel(about: About): TrendPanel {
   const live = about.source === 'daemon';
   let points: Point[] = [];
   let marks: Mark[] = [];
-  let kept_s = window_s;
   let drawnMs = 0;
   let fresh = false;
 
   const timeRange = (): [number, number] => {
     const end = points.at(-1)?.t ?? window_s;
-    const from = live ? end - kept_s : Math.max(0, end - kept_s);
-    return [from, live ? end : from + Math.min(kept_s, about.duration_s ?? kept_s)];
+    const from = live ? end - window_s : Math.max(0, end - window_s);
+    return [from, live ? end : from + Math.min(window_s, about.duration_s ?? window_s)];
   };
   const speedRange = (): [number, number] => {
     const known = points.flatMap((p) => (p.rpm ? [p.rpm] : []));
@@ -90,7 +89,11 @@ export function trendPanel(about: About): TrendPanel {
     ctx.restore();
   };
 
-  const times = (_: uPlot, values: number[]): string[] => values.map((t) => clock(t, live, 0));
+  // No label so far to the right that it would be cut off.
+  const times = (_: uPlot, values: number[]): string[] => {
+    const [from, to] = timeRange();
+    return values.map((t) => (live && t > to - 0.04 * (to - from) ? '' : clock(t, live, 0)));
+  };
   const speeds = new Chart(byId('speed-chart'), (l) => ({
     ...plain,
     padding: [0.6 * l.rem, rightEms * l.rem, 0, 0],
@@ -131,15 +134,14 @@ export function trendPanel(about: About): TrendPanel {
 
   return {
     add(state, speed) {
-      kept_s = window_s * Math.max(speed, 1);
       const last = points.at(-1);
       if (last && state.t <= last.t) return;
       const gap = last && state.t - last.t > 0.5 * Math.max(speed, 1); // not heard: no line through it
       if (gap) points.push({ t: last.t + 1e-3, rpm: null, advised: null, indicator: null });
       const advised = state.advice === 'spindle speed' ? state.advised_rpm : null;
       points.push({ t: state.t, rpm: state.rpm, advised, indicator: state.indicator });
-      const from = state.t - kept_s;
-      if (points.length > pointsKept + 200) points = points.slice(-pointsKept).filter((p) => p.t >= from);
+      const from = state.t - window_s;
+      if (points.length > pointsKept + 200) points = points.filter((p) => p.t >= from).slice(-pointsKept);
       fresh = true;
     },
 

@@ -11,7 +11,7 @@ const nominalRow_s = 0.05;
 const behindRows = 1; // shown behind what was heard, so that a late row stops nothing
 
 export interface Waterfall {
-  add(spectrum: Spectrum, speed: number): void;
+  add(spectrum: Spectrum): void;
   frame(nowMs: number, smooth: boolean): void;
   /** Colours of levels run over these decibels. */
   setRange(low_db: number, high_db: number): void;
@@ -31,6 +31,7 @@ export function waterfall(): Waterfall {
   let newest = 0; // rows added so far
   let newest_s = 0; // data time of the newest
   let row_s = nominalRow_s;
+  let steps: number[] = [];
   let shown = 0; // the row at the top edge, in fractions
   let drawn = -1;
   let lastMs = 0;
@@ -71,7 +72,14 @@ export function waterfall(): Waterfall {
     paint(newest++);
   };
 
+  /** The usual step between rows in data time: a recording played fast may send each spectrum, or fewer. */
+  const usual = (step_s: number): number => {
+    steps = [...steps.slice(-14), step_s];
+    return [...steps].sort((a, b) => a - b)[steps.length >> 1] as number;
+  };
+
   const reset = (): void => {
+    steps = [];
     levels.fill(NaN);
     newest = shown = newest_s = 0;
     drawn = -1;
@@ -89,8 +97,16 @@ export function waterfall(): Waterfall {
     }
   };
 
+  const drawEmpty = (): void => {
+    ctx.fillStyle = look().ground;
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    drawAxis(Math.round(sideEms * look().rem * devicePixelRatio), canvas.height);
+    ctx.fillRect(canvas.width - Math.round(rightEms * look().rem * devicePixelRatio), 0, canvas.width, canvas.height);
+    dirty = false;
+  };
+
   return {
-    add(spectrum, speed) {
+    add(spectrum) {
       const { bin_hz: hz, low_db, step_db, levels: data } = spectrum;
       if (hz === null || low_db === null || step_db === null || !data.length) return;
       if (data.length !== bins || hz !== bin_hz) {
@@ -101,15 +117,16 @@ export function waterfall(): Waterfall {
         ring.height = rowsKept;
         reset();
       }
-      row_s = nominalRow_s * Math.max(speed, 1);
       // A gap in the data is a gap in the picture, so that its scale of time holds.
-      const missed = newest ? Math.round((spectrum.t - newest_s) / row_s) - 1 : 0;
+      const step_s = spectrum.t - newest_s;
+      if (newest && step_s > 0) row_s = usual(step_s);
+      const missed = newest ? Math.round(step_s / row_s) - 1 : 0;
       if (missed >= 2) for (let i = 0; i < Math.min(missed, rowsKept); i++) append(null);
       append(Float32Array.from(data, (byte) => low_db + step_db * byte));
       newest_s = spectrum.t;
       const nowMs = performance.now();
       const gapMs = nowMs - heardMs;
-      if (gapMs < 500) rate_hz += 0.05 * (1000 / Math.max(gapMs, 5) - rate_hz) * Math.min(gapMs / 50, 1);
+      if (gapMs < 2000) rate_hz += 0.1 * (1000 / Math.max(gapMs, 5) - rate_hz);
       heardMs = nowMs;
       dirty = true;
     },
@@ -117,7 +134,10 @@ export function waterfall(): Waterfall {
     frame(nowMs, smooth) {
       const dt = Math.min((nowMs - lastMs) / 1000, 0.1);
       lastMs = nowMs;
-      if (!bins) return;
+      if (!bins) {
+        if (dirty) drawEmpty();
+        return;
+      }
       if (smooth) {
         shown += rate_hz * dt; // the flow, and a gentle pull to where it should be
         shown += (newest - behindRows - shown) * Math.min(1, 2 * dt);

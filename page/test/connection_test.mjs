@@ -28,6 +28,17 @@ test('SaysThatDataAreOldWhileTheServerIsSilent', async (t) => {
   await page.context().close();
 });
 
+test('TakesNothingElseForAState', async (t) => {
+  const server = await serve(t, { at: 5 });
+  const page = await open(browser, server.url);
+  await waitForText(page, 'state-word', 'Stable');
+  server.setStateless(true);
+  await waitForText(page, 'state-word', 'No data');
+  server.setStateless(false);
+  await waitForText(page, 'state-word', 'Stable');
+  await page.context().close();
+});
+
 test('ComesBackByItselfAfterTheServerDied', async (t) => {
   let server = await serve(t, { at: 5 });
   const { port } = server;

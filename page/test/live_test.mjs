@@ -1,60 +1,27 @@
-// Every panel shows what the stream says. With PAGE_URL set, the tests that need no hold on the server look at the one there.
+// Every panel shows what the stream says, follows each change, and bears what cannot be read.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { built, colours, launch, listen, open, until, waitForText } from './browser.mjs';
+import { built, colours, launch, open, until, waitForText } from './browser.mjs';
 import { startServer } from './mock_server.mjs';
+import { checkPanels } from './panels.mjs';
 
 let browser, server, url;
-const given = process.env.PAGE_URL;
 let page; // of the tests that follow each other on one
 before(async () => {
   browser = await launch();
-  if (!given) server = await startServer({ page: built, at: 12 });
-  url = given ?? server.url;
+  server = await startServer({ page: built, at: 12 });
+  url = server.url;
 });
 after(async () => {
   await browser?.close();
   await server?.stop();
 });
 
-const digits = (v, n) => (v === null ? '–' : Math.abs(v).toFixed(n).replace(/\B(?=(\d{3})+$)/, (m, d, at, s) => (s.length > 4 && n === 0 ? '\u202f' : m)).replace(/^/, v < 0 ? '−' : ''));
-
 test('FillsEveryPanelWithWhatTheStreamSays', async () => {
-  const { heard, stop } = listen(url);
-  const page = await open(browser, url);
-  const shows = async (id, kind, texts) => until(async () => {
-    const text = await page.textContent(`#${id}`);
-    return (heard[kind] ?? []).some((m) => texts(m).every((words) => text.includes(words)));
-  }, `#${id} shows a ${kind} of the stream; it is '${await page.textContent(`#${id}`)}'`);
-
-  await shows('state-word', 'state', (s) => [s.state.charAt(0).toUpperCase() + s.state.slice(1)]);
-  await shows('state-reason', 'state', (s) => [s.reason]);
-  await shows('rpm', 'state', (s) => [digits(s.rpm, 0)]);
-  await shows('indicator', 'state', (s) => [digits(s.indicator, 2)]);
-  await shows('chatter-kind', 'state', (s) => [s.chatter_hz === null ? 'none heard' : s.chatter_kind ?? 'kind unknown']);
-  await shows('depth', 'state', (s) => [digits(s.depth_mm, s.depth_mm !== null && s.depth_mm < 1 ? 3 : 2)]);
-  await shows('limit', 'state', (s) => [s.limit_mm === null ? 'limit not known' : digits(s.limit_mm, s.limit_mm < 1 ? 3 : 2)]);
-  await shows('tooth-hz', 'spectrum', (s) => [s.tooth_hz === null ? '–' : digits(s.tooth_hz, s.tooth_hz < 100 ? 1 : 0)]);
-  await shows('spindle-hz', 'spectrum', (s) => [s.spindle_hz === null ? '–' : digits(s.spindle_hz, s.spindle_hz < 100 ? 1 : 0)]);
-  await shows('lobes-modes', 'lobes', (l) => l.modes.map((m) => digits(m.hz, m.hz < 100 ? 1 : 0)));
-  await shows('sensors', 'health', (h) => h.sensors.flatMap((s) => [s.name, String(s.frames_lost)]));
-  await shows('hops', 'health', (h) => h.hops.flatMap((hop) => [hop.hop, String(hop.lost)]));
-  await shows('stages', 'latency', (l) => l.stages.map((s) => s.stage));
-  if (heard.correction?.length) {
-    await shows('log', 'correction', (c) => [c.kind === 'spindle speed' ? digits(c.rpm_target, 0) : '', ...c.limited_by]);
-  }
-  stop();
-  for (const chart of ['#spectrum-chart', '#lobes-chart', '#speed-chart', '#indicator-chart', '#latency-chart']) {
-    await until(async () => (await colours(page, `${chart} canvas`)) > 3, `${chart} is drawn`);
-  }
-  await until(async () => (await colours(page, '#waterfall')) > 50, 'the waterfall is drawn');
-  const allowed = await page.evaluate(() => document.querySelectorAll('style, script:not([src]), [style*="url"]').length);
-  assert.equal(allowed, 0, 'styles or scripts within the page');
-  assert.deepEqual(page.problems, []);
-  await page.context().close();
+  await checkPanels(browser, server.url, ['state', 'spectrum', 'lobes', 'health', 'latency', 'correction']);
 });
 
-test('TheWaterfallMovesBetweenSpectra', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('TheWaterfallMovesBetweenSpectra', async () => {
   const page = await open(browser, url);
   await until(async () => Number(await page.getAttribute('#waterfall', 'data-frames')) > 20, 'frames are drawn');
   // More pictures than spectra: it scrolls on the screen's clock.
@@ -74,7 +41,7 @@ test('TheWaterfallMovesBetweenSpectra', { skip: Boolean(given) && 'needs the moc
   await page.context().close();
 });
 
-test('ScrollsInStepsWhereMotionIsToBeReduced', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('ScrollsInStepsWhereMotionIsToBeReduced', async () => {
   const page = await open(browser, url, { reducedMotion: 'reduce' });
   await until(async () => (await colours(page, '#waterfall')) > 50, 'the waterfall is drawn');
   const drawn = await page.evaluate(async () => {
@@ -87,7 +54,7 @@ test('ScrollsInStepsWhereMotionIsToBeReduced', { skip: Boolean(given) && 'needs 
   await page.context().close();
 });
 
-test('FollowsEachStateAndTellsItByWordAndShape', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('FollowsEachStateAndTellsItByWordAndShape', async () => {
   page ??= await open(browser, url);
   const shapes = new Map();
   server.hold({ state: 'unheard of' }); // not what the first of the following is
@@ -106,7 +73,7 @@ test('FollowsEachStateAndTellsItByWordAndShape', { skip: Boolean(given) && 'need
   server.hold(null);
 });
 
-test('ShowsWhatIsAdvisedAndWhatLimitsIt', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('ShowsWhatIsAdvisedAndWhatLimitsIt', async () => {
   page ??= await open(browser, url);
   for (const [fields, words] of [
     [{ advice: 'spindle speed', advised_rpm: 12345 }, '→ advised 12\u202f345\u00a0rpm'],
@@ -124,7 +91,7 @@ test('ShowsWhatIsAdvisedAndWhatLimitsIt', { skip: Boolean(given) && 'needs the m
   server.hold(null);
 });
 
-test('RefusesWhatItCannotReadAndGoesOn', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('RefusesWhatItCannotReadAndGoesOn', async () => {
   page ??= await open(browser, url);
   await waitForText(page, 'connection', 'connected');
   for (const kind of ['state', 'spectrum', 'lobes', 'event', 'correction', 'health', 'latency']) {
@@ -137,7 +104,8 @@ test('RefusesWhatItCannotReadAndGoesOn', { skip: Boolean(given) && 'needs the mo
   server.send('lobes', { t, rpm: [1, null, 'x'], limit_mm: 'none', chatter_hz: null, modes: [null, 7] });
   server.send('spectrum', { t, sensor: 0, bin_hz: 0, low_db: null, step_db: 1, levels: '' });
   server.send('health', { t, sensors: [{}], hops: [3], doubts: [null] });
-  server.send('latency', { t, stages: [{}], histograms: [{ stage: 'x', first_us: 0, per_octave: 0, counts: [1] }, {}] });
+  server.send('spectrum', { t, sensor: 0, bin_hz: -1, low_db: -80, step_db: 1, levels: 'AAAA' });
+  server.send('latency', { t, stages: [{}], histograms: [{ stage: 'x', first_us: 0, per_octave: 4, counts: [1] }, { stage: 'y', first_us: 1, per_octave: 0, counts: [1] }, {}] });
   server.send('correction', { t, limited_by: null });
   server.hold({ rpm: 'fast', limited_by: 'all', state: 'stable', reason: '<b id="injected">words</b><img src=x onerror=alert(1)>' });
   await waitForText(page, 'rpm', '–');
@@ -151,7 +119,7 @@ test('RefusesWhatItCannotReadAndGoesOn', { skip: Boolean(given) && 'needs the mo
   assert.deepEqual(page.problems, []);
 });
 
-test('KeepsBoundedWhatItRemembers', { skip: Boolean(given) && 'needs the mock' }, async () => {
+test('KeepsBoundedWhatItRemembers', async () => {
   page ??= await open(browser, url);
   await waitForText(page, 'connection', /^connected/);
   for (let i = 0; i < 500; i++) server.send('event', { t: 1e9 + i, event: 'cut_entry', kind: '', hz: null, note: `number ${i}` });

@@ -19,6 +19,7 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
   const started = Date.now() / 1000;
   let held = null; // state fields given by a test
   let silent = false;
+  let stateless = false;
   let requests = [];
 
   /** Where in the cut this client is, and the time stamp that goes with it. */
@@ -44,7 +45,7 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
       clients.delete(client);
       return;
     }
-    sendState(client);
+    if (!stateless) sendState(client);
     send(client, 'spectrum', { ...cut.spectrumAt(inCut), t });
     const due = (from) => client.last !== null && from > client.last && from <= inCut;
     for (const e of cut.events) if (due(e.t)) send(client, 'event', { ...e, t: t - (inCut - e.t) });
@@ -116,6 +117,8 @@ export async function startServer({ port = 0, page, recording = false, at = 0 } 
     /** Sends something to every client. */
     send: (event, data) => clients.forEach((client) => send(client, event, data)),
     setSilent: (value) => { silent = value; },
+    /** Everything goes on but the states. */
+    setStateless: (value) => { stateless = value; },
     stop() {
       clearInterval(timer);
       server.closeAllConnections();
