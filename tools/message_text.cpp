@@ -96,8 +96,10 @@ std::string message_text(std::string_view channel, std::span<const std::uint8_t>
   }
   text += message.schema->name + printf_text(", %zu bytes\n", bytes.size());
   for (const FieldReading& reading : message.fields) text += field_text(reading, all_values);
-  if (!message.why_not.empty()) text += "  ! broken: " + message.why_not + "\n  " + hex_text(bytes) + "\n";
-  if (const std::string refused = why_refused(channel, bytes); !refused.empty())
+  const std::string refused = why_refused(channel, bytes);
+  if (!message.why_not.empty())
+    text += "  ! broken: " + message.why_not + "\n  " + hex_text(bytes) + "\n";
+  else if (!refused.empty())
     text += "  ! Stillcut refuses it: " + refused + "\n";
   return text;
 }

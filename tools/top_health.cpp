@@ -23,7 +23,7 @@ TextLine sensor_line(std::size_t i, const SensorHealth& sensor) {
           {off ? Ink::caution : Ink::plain, (off ? "! " : "") + number_text("%.1f", sensor.rate_hz) +
                                                 printf_text(" of %.0f Hz (", sensor.nominal_rate_hz) +
                                                 number_text("%+.3f %%", error, "not known yet") + "), "},
-          count_piece("frames lost", sensor.lost, ", "),
+          count_piece("lost", sensor.lost, ", "),
           count_piece("gaps", sensor.gaps, ", "),
           count_piece("saturated", sensor.saturated, ", "),
           count_piece("not finite", sensor.not_finite, "")};

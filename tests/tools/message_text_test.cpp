@@ -84,7 +84,7 @@ TEST(MessageText, SaysWhatIsWrongWithBrokenRefusedAndForeignMessages) {
   MessageBytes bytes = encode(Status{});
   bytes.resize(bytes.size() - 20);
   const std::string broken = message_text(kStatusChannel, bytes, 0, false);
-  EXPECT_THAT(broken, HasSubstr("! broken: the bytes end within frames_lost"));
+  EXPECT_THAT(broken, HasSubstr("! broken: the bytes end within frames\n"));
   EXPECT_THAT(broken, HasSubstr("\n  indicator"));
   const MessageBytes foreign(40, 0xAB);
   const std::string other = message_text("OTHER\x1b[2J", foreign, 0, false);

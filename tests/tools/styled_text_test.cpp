@@ -18,7 +18,9 @@ std::string random_bytes(std::mt19937& random, std::size_t length) {
 TEST(StyledText, PrintableKeepsWordsOfOursAndNothingThatATerminalObeys) {
   EXPECT_EQ(printable("11 220 rpm, 45°, ±2 µm – n = 60 f_c/(N k) → stable…"),
             "11 220 rpm, 45°, ±2 µm – n = 60 f_c/(N k) → stable…");
-  EXPECT_EQ(printable("\x1b[2J\x07\r\n\x7f\xc2\x9b!"), "?[2J?????" "!");
+  EXPECT_EQ(printable("\x1b[2J\x07\r\n\x7f\xc2\x9b!"),
+            "?[2J?????"
+            "!");
   EXPECT_EQ(printable("\xff\xc0\xaf\xe2\x82"), "?????");
   EXPECT_EQ(printable("漢e\u0301\u202e"), "?e??") << "wide, combining, turning around";
   std::mt19937 random{4};

@@ -108,7 +108,7 @@ TEST(TopScreen, EveryMatterIsOnSomePageOfASmallTerminalAndOnTheOneOfALargeOne) {
                                      "Events",
                                      "chatter onset (structural), 21.5 Hz",
                                      "! doubts: ",
-                                     "25598.5 of 25600 Hz (-0.006 %), ! frames lost 3, ! gaps 1",
+                                     "25598.5 of 25600 Hz (-0.006 %), ! lost 3, ! gaps 1",
                                      "! 9000.0 of 10000 Hz (-10.000 %)",
                                      "! CAN, dropped by the kernel 12",
                                      "! LCM to here, not readable 5",
