@@ -65,8 +65,10 @@ void echo(const EchoOptions& options) {
   const std::int64_t start_ns = monotonic_ns();
   bool told = false;
   while (!asked_to_end() && (options.count == 0 || heard < options.count)) {
-    if (!listener.wait(kEchoWait_ms))
+    if (!listener.wait(kEchoWait_ms)) {
+      if (is_lcm_log(url)) return;
       throw ComponentError("LCM at " + url + " cannot be read any more; see 'stillcut doctor'");
+    }
     if (told || heard > 0 || monotonic_ns() - start_ns < kEchoSilence_ns) continue;
     told = true;
     std::cerr << "stillcut: nothing was heard at " << url << " for 3 s; does the daemon run: stillcutd CELL\n";

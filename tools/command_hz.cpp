@@ -64,8 +64,11 @@ void hz(const HzOptions& options) {
   std::int64_t period_ns = start_ns;
   const auto passed_s = [](std::int64_t since_ns) { return static_cast<double>(monotonic_ns() - since_ns) * 1e-9; };
   while (!asked_to_end() && (options.duration_s <= 0.0 || passed_s(start_ns) < options.duration_s)) {
-    if (!listener.wait(kHzWait_ms))
-      throw ComponentError("LCM at " + url + " cannot be read any more; see 'stillcut doctor'");
+    if (!listener.wait(kHzWait_ms)) {
+      if (!is_lcm_log(url)) throw ComponentError("LCM at " + url + " cannot be read any more; see 'stillcut doctor'");
+      if (!options.json) print_rates(rates, passed_s(period_ns), terminal);
+      break;
+    }
     if (monotonic_ns() - period_ns < kHzPeriod_ns || options.json) continue;
     print_rates(rates, passed_s(period_ns), terminal);
     rates.begin_period();

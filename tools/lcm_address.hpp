@@ -14,4 +14,7 @@ inline std::string lcm_address(const std::string& url_or_cell) {
   return read_cell(url_or_cell, {.map = false, .dbc = false, .bus = false}).lcm_url;
 }
 
+// A log that lcm-logger or the recorder wrote, played by LCM itself: "file://cut.lcm?speed=0". It ends.
+inline bool is_lcm_log(const std::string& url) { return url.starts_with("file:"); }
+
 }  // namespace stillcut

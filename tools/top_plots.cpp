@@ -32,7 +32,7 @@ class MarkRow {
   explicit MarkRow(int columns) : text_(static_cast<std::size_t>(std::max(0, columns)), ' ') {}
   void put(double share, char mark) {
     if (share >= 0.0 && share <= 1.0 && !text_.empty())
-      text_[static_cast<std::size_t>(share * static_cast<double>(text_.size() - 1) + 0.5)] = mark;
+      text_[static_cast<std::size_t>(std::lround(share * static_cast<double>(text_.size() - 1)))] = mark;
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -168,8 +168,8 @@ std::vector<TextLine> draw_lobes(const CellView& view, const DiagramReport& diag
     const double across = std::clamp((rpm - diagram.min_rpm) / (diagram.max_rpm - diagram.min_rpm), 0.0, 1.0);
     const double up = std::clamp(depth_mm / top_mm, 0.0, 1.0);
     const int row = std::clamp(bar_rows - 1 - static_cast<int>(up * bar_rows), 0, bar_rows - 1);
-    put_mark(lines[static_cast<std::size_t>(row)], kPlotLabel + static_cast<int>(across * (width - 1) + 0.5), mark,
-             ink);
+    put_mark(lines[static_cast<std::size_t>(row)], kPlotLabel + static_cast<int>(std::lround(across * (width - 1))),
+             mark, ink);
   };
   if (const Correction* asked = view.asked(); asked != nullptr && (asked->kind == CorrectionKind::spindle_speed ||
                                                                    asked->kind == CorrectionKind::feed_override))

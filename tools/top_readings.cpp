@@ -75,7 +75,7 @@ TextLine scale_line(double low, double high, const std::vector<ScaleMark>& marks
   for (const ScaleMark& mark : marks) {
     if (std::isnan(mark.value)) continue;
     const double share = std::clamp((mark.value - low) / (high - low), 0.0, 1.0);
-    at[static_cast<std::size_t>(share * (inside - 1) + 0.5)] = &mark;
+    at[static_cast<std::size_t>(std::lround(share * (inside - 1)))] = &mark;
   }
   for (const ScaleMark* mark : at) {
     const TextPiece piece =
