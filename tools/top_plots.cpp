@@ -64,6 +64,7 @@ std::vector<TextLine> draw_spectrum(const CellView& view, const SpectrumReport& 
   const std::size_t bins = report.levels.size();
   if (width < 1 || bar_rows < 1 || bins == 0) return {{{Ink::faint, "no room, or no spectrum"}}};
   std::vector<double> levels;  // the largest of those that fall in one column, so that no line is lost
+  levels.reserve(static_cast<std::size_t>(width));
   for (int c = 0; c < width; ++c) {
     const auto first = bins * static_cast<std::size_t>(c) / static_cast<std::size_t>(width);
     const auto end = std::max(first + 1, bins * static_cast<std::size_t>(c + 1) / static_cast<std::size_t>(width));
@@ -158,6 +159,7 @@ std::vector<TextLine> draw_lobes(const CellView& view, const DiagramReport& diag
   const double depth_mm = monitor != nullptr ? 1e3 * monitor->axial_depth : kNaN;
   const double top_mm = shown_depth_mm(diagram, depth_mm);
   std::vector<double> heights;
+  heights.reserve(static_cast<std::size_t>(width));
   for (int c = 0; c < width; ++c)
     heights.push_back(std::clamp(
         limit_between(diagram, c / static_cast<double>(width), (c + 1) / static_cast<double>(width)) / top_mm, 0.0,
