@@ -47,7 +47,7 @@ for (const [width, height] of [[1366, 768], [1920, 1080]]) {
   });
   const sent = new Map();
   for (let i = 0; i < Number(values.changes); i++) {
-    const reason = `change ${i}`;
+    const reason = `Change ${i}`;
     sent.set(reason, Date.now());
     server.hold({ state: i % 2 ? 'chatter' : 'stable', reason });
     await new Promise((resolve) => setTimeout(resolve, 40 + ((i * 7) % 23)));

@@ -13,14 +13,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Seven digits are more than anyone sees.
-double rounded(double value) {
+double seven_digits(double value) {
   if (value == 0.0) return 0.0;
   const double scale = std::pow(10.0, 6.0 - std::floor(std::log10(std::abs(value))));
   return std::round(value * scale) / scale;
 }
 
 Json number_json(double value, double scale = 1.0) {
-  return std::isfinite(value) ? Json(rounded(scale * value)) : Json(nullptr);
+  return std::isfinite(value) ? Json(seven_digits(scale * value)) : Json(nullptr);
 }
 Json text_json(const ShortText& text) { return std::string(text_of(text)); }
 double since(std::int64_t stamp_ns, std::int64_t origin_ns) {
@@ -92,12 +92,12 @@ Json lobes_json(const DiagramReport& report, std::int64_t origin_ns) {
   const double step = points > 1 ? (report.max_rpm - report.min_rpm) / static_cast<double>(points - 1) : 0.0;
   for (std::size_t i = 0; i < points; ++i) {
     const auto limit_mm = static_cast<double>(report.depth_limit_mm[i]);
-    rpm.push_back(rounded(report.min_rpm + step * static_cast<double>(i)));
+    rpm.push_back(seven_digits(report.min_rpm + step * static_cast<double>(i)));
     // Without bound: null; unstable at every depth: none is allowed.
     limit.push_back(std::isnan(limit_mm) ? Json(0.0) : number_json(limit_mm));
   }
   for (std::size_t i = 0; i < report.mode_hz.size(); ++i)
-    modes.push_back({{"hz", rounded(report.mode_hz[i])}, {"damping_ratio", rounded(report.mode_damping[i])}});
+    modes.push_back({{"hz", seven_digits(report.mode_hz[i])}, {"damping_ratio", seven_digits(report.mode_damping[i])}});
   return {{"t", since(report.stamp_ns, origin_ns)},
           {"valid", report.valid},
           {"rpm", std::move(rpm)},

@@ -18,7 +18,7 @@ constexpr std::int64_t kWatchHeld_ns = 1'000'000'000;
 constexpr std::size_t kMostSpectra = kMaxSensors;
 
 template <class... Values>
-std::string sentence(const char* format, Values... values) {
+std::string phrase(const char* format, Values... values) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(), format, values...);
   return text.data();
@@ -38,11 +38,18 @@ bool begins_something(const Correction& correction, const Correction& before) {
          std::abs(correction.speed_variation_ratio - before.speed_variation_ratio) > 1e-3;
 }
 
+// What the controller is asked for.
+std::string asked_sentence(const Correction& correction) {
+  if (correction.kind == CorrectionKind::spindle_speed)
+    return phrase("spindle speed to %.0f rpm", correction.spindle_speed_target_rpm);
+  return std::string(text_of(correction.reason));
+}
+
 std::string depth_sentence(const MonitorReport& monitor) {
   const double depth_mm = 1e3 * monitor.axial_depth, limit_mm = 1e3 * monitor.depth_limit;
-  if (std::isinf(limit_mm)) return sentence("%.2f mm deep, no limit predicted at this speed", depth_mm);
+  if (std::isinf(limit_mm)) return phrase("%.2f mm deep, no limit predicted at this speed", depth_mm);
   if (std::isnan(limit_mm)) return "no limit is predicted for this posture and speed";
-  return sentence("%.2f mm deep, predicted limit %.2f mm", depth_mm, limit_mm);
+  return phrase("%.2f mm deep, predicted limit %.2f mm", depth_mm, limit_mm);
 }
 
 }  // namespace
@@ -56,9 +63,9 @@ const char* shown_name(Shown shown) noexcept {
 std::string chatter_sentence(const MonitorReport& monitor) {
   std::string text = monitor.kind == ChatterKind::unknown ? "chatter of a kind not yet known"
                                                           : std::string(chatter_name(monitor.kind)) + " chatter";
-  if (std::isfinite(monitor.chatter_frequency_hz)) text += sentence(" at %.1f Hz", monitor.chatter_frequency_hz);
+  if (std::isfinite(monitor.chatter_frequency_hz)) text += phrase(" at %.1f Hz", monitor.chatter_frequency_hz);
   if (monitor.chatter_mode > 0)
-    text += sentence(", nearest mode %d (%.1f Hz)", monitor.chatter_mode, monitor.chatter_mode_hz);
+    text += phrase(", nearest mode %d (%.1f Hz)", monitor.chatter_mode, monitor.chatter_mode_hz);
   return text;
 }
 
@@ -136,14 +143,13 @@ ShownState CellView::state(std::int64_t now_ns) const {
   const double silent = silent_s(now_ns);
   if (silent > kSilentIsGone_s || !monitor_)
     return {Shown::no_daemon, std::isinf(silent) ? "nothing was heard of a daemon yet; start it: stillcutd CELL"
-                                                 : sentence("nothing was heard of the daemon for %.0f s", silent)};
+                                                 : phrase("nothing was heard of the daemon for %.0f s", silent)};
   if (monitor_->doubts != 0) return {Shown::cannot_tell, joined(doubt_names(monitor_->doubts))};
   if (std::string why = why_fault(); !why.empty()) return {Shown::fault, std::move(why)};
   if (health_ && health_->frames == 0) return {Shown::cannot_tell, "no CAN frame was heard yet; see 'stillcut doctor'"};
   if (const Correction* now = asked(); now != nullptr && now->mode == RuntimeMode::active) {
-    std::string reason{text_of(now->reason)};
-    if (monitor_->chatter) reason = chatter_sentence(*monitor_) + ": " + reason;
-    return {Shown::correcting, std::move(reason)};
+    return {Shown::correcting, asked_sentence(*now) + (monitor_->chatter ? ", against " + chatter_sentence(*monitor_)
+                                                                         : ", the chatter is over")};
   }
   if (monitor_->chatter) return {Shown::chatter, chatter_sentence(*monitor_)};
   return in_the_cut();

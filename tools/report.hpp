@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm/messages.hpp"
 #include "drivers/lcm/telemetry_messages.hpp"
 #include "dsp/numbers.hpp"
 #include "models/lobe_diagram.hpp"
@@ -35,7 +34,7 @@ struct ReportCorrection {
   RuntimeMode mode = RuntimeMode::shadow;
   double from_rpm = kNaN, target_rpm = kNaN;
   double margin_before = kNaN, margin_after = kNaN;  // predicted, a_lim/a - 1
-  int confidence_percent = 0;
+  std::int8_t confidence_percent = 0;
   std::int64_t first_sequence = 0, last_sequence = 0;  // of the messages that asked for it; 0: none
   std::int64_t accepted = 0, refused = 0;              // acknowledgements of these
   std::string refusal;                                 // the controller's words

@@ -7,6 +7,7 @@ namespace stillcut {
 namespace {
 
 constexpr double kLevel_s = 0.05;
+constexpr double kOffset_s = 0.1;  // what is slower than some 1.6 Hz is no vibration
 constexpr int kAfterLevels = 10;
 constexpr std::size_t kMostLobes = 48;
 
@@ -115,10 +116,13 @@ void ReportCollector::hear_samples(const SampleBlock& block, const SampleStretch
   pictures_.add(stretch);
   if (block.sensor != 0) return;
   for (std::size_t i = 0; i < static_cast<std::size_t>(stretch.samples); ++i) {
-    double square = 0.0;
-    for (const auto& axis : stretch.axis)
-      if (!axis.empty() && std::isfinite(axis[i])) square += double{axis[i]} * axis[i];
-    level_.square += square;
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      if (stretch.axis[a].empty() || !std::isfinite(stretch.axis[a][i])) continue;
+      const double value = stretch.axis[a][i];
+      level_.offset[a] = level_.begun ? std::lerp(level_.offset[a], value, stretch.step_s / kOffset_s) : value;
+      level_.square += (value - level_.offset[a]) * (value - level_.offset[a]);
+    }
+    level_.begun = true;
     ++level_.count;
   }
   if (static_cast<double>(level_.count) * stretch.step_s >= kLevel_s) end_level(seconds(block.stamp_ns));
@@ -145,7 +149,8 @@ void ReportCollector::measure_rate(const SampleBlock& block, const SampleStretch
 
 void ReportCollector::end_level(double time_s) {
   newest_level_ = std::sqrt(level_.square / static_cast<double>(level_.count));
-  level_ = {};
+  level_.square = 0.0;
+  level_.count = 0;
   timeline_.add({.begin_s = time_s, .level = newest_level_});
   for (const int episode : open_episodes_) {
     double& before = report_.episodes[static_cast<std::size_t>(episode)].level_before;

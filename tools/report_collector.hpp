@@ -25,9 +25,11 @@ class ReportCollector {
   [[nodiscard]] Report finish(const PlaybackSummary& played);
 
  private:
-  struct Level {  // rms of the first accelerometer, all axes, over 50 ms
+  struct Level {  // rms of the first accelerometer, all axes, over 50 ms, without its offset and slow drift
     double square = 0.0;
     std::int64_t count = 0;
+    std::array<double, kMaxAxes> offset{};
+    bool begun = false;
   };
   struct SensorSpan {  // what a sensor's rate is measured on: its frames since the last leap in time
     std::int64_t first_ns = 0, last_ns = 0, samples = 0;

@@ -110,10 +110,10 @@ nlohmann::ordered_json report_json(const Report& report) {
   json["latency_us"] = Json::object();
   for (const LatencyReport::Stage& stage : report.loop_times->stages)
     json["latency_us"][stage.name] = {{"count", stage.count},
-                                       {"p50", stage.p50_us},
-                                       {"p99", stage.p99_us},
-                                       {"p99.9", stage.p999_us},
-                                       {"max", stage.max_us}};
+                                      {"p50", stage.p50_us},
+                                      {"p99", stage.p99_us},
+                                      {"p99.9", stage.p999_us},
+                                      {"max", stage.max_us}};
   return json;
 }
 

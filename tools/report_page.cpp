@@ -107,7 +107,7 @@ std::string margin_text(const ReportCorrection& correction) {
 
 std::string asked_text(const ReportCorrection& correction) {
   if (correction.first_sequence == 0) return correction.note;
-  const std::string speeds = shown(correction.from_rpm, 0) + " → " + shown(correction.target_rpm, 0) + " rpm";
+  std::string speeds = shown(correction.from_rpm, 0) + " → " + shown(correction.target_rpm, 0) + " rpm";
   switch (correction.kind) {
     case CorrectionKind::spindle_speed:
       return speeds;

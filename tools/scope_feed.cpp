@@ -12,10 +12,10 @@
 namespace stillcut {
 namespace {
 
-constexpr std::size_t kMostWaiting = 400;             // chunks of a reader: eight seconds
-constexpr std::size_t kPastKept = 100;                // events and corrections that a new viewer gets
-constexpr std::int64_t kStateEvery_ns = 250'000'000;  // where nothing is heard
-constexpr std::size_t kMostBytes = 256U << 20U;       // of a timeline
+constexpr std::size_t kMostChunksWaiting = 400;          // chunks of a reader: eight seconds
+constexpr std::size_t kPastKept = 100;                   // events and corrections that a new viewer gets
+constexpr std::int64_t kStateEvery_ns = 250'000'000;     // where nothing is heard
+constexpr std::size_t kMostTimelineBytes = 256U << 20U;  // of a timeline
 constexpr double kLongestStep_s = 0.1;
 
 }  // namespace
@@ -80,7 +80,7 @@ void LiveFeed::emit(StreamItem item) {
     newest_[item.newest_of] = item.chunk;
   }
   for (Queue* queue : readers_) {
-    if (queue->size() < kMostWaiting) {
+    if (queue->size() < kMostChunksWaiting) {
       queue->push_back(item.chunk);
     } else {
       queue->clear();
@@ -166,7 +166,7 @@ void TimelineFeed::begin(std::int64_t origin_ns) {
     if (!item.newest_of.empty() && seen_[item.newest_of]++ % keep_one_of_ != 0) return;
     bytes_ += item.chunk->size();
     entries_.push_back({static_cast<double>(newest_ns_ - origin_ns_) * 1e-9, std::move(item.newest_of), item.chunk});
-    if (bytes_ > kMostBytes) thin_out();
+    if (bytes_ > kMostTimelineBytes) thin_out();
   });
 }
 

@@ -14,6 +14,13 @@
 #include "drivers/files/input_error.hpp"
 
 namespace stillcut {
+
+struct PageFile {
+  std::string content;
+  const char* type;
+};
+using PageFiles = std::map<std::string, PageFile>;  // by path, "/" among them
+
 namespace {
 
 constexpr std::size_t kMostInOneWrite = 32768;
@@ -35,12 +42,6 @@ const httplib::Headers kStrict{
     {"Cross-Origin-Opener-Policy", "same-origin"},
     {"Cache-Control", "no-store"}};
 
-struct Asset {
-  std::string content;
-  const char* type;
-};
-using Assets = std::map<std::string, Asset>;  // by path, "/" among them
-
 const char* type_of(const std::filesystem::path& file) {
   static const std::map<std::string, const char*> kTypes{{".html", "text/html; charset=utf-8"},
                                                          {".js", "text/javascript; charset=utf-8"},
@@ -53,21 +54,21 @@ const char* type_of(const std::filesystem::path& file) {
 }
 
 // All of the page, once: what is not in here cannot be asked for, whatever the path.
-Assets read_page(const std::filesystem::path& folder) {
-  Assets assets;
+PageFiles read_page(const std::filesystem::path& folder) {
+  PageFiles files;
   std::error_code none;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, none)) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in{entry.path(), std::ios::binary};
     std::ostringstream content;
     content << in.rdbuf();
-    assets['/' + entry.path().lexically_relative(folder).generic_string()] = {content.str(), type_of(entry.path())};
+    files['/' + entry.path().lexically_relative(folder).generic_string()] = {content.str(), type_of(entry.path())};
   }
-  const auto index = assets.find("/index.html");
-  if (index == assets.end())
+  const auto index = files.find("/index.html");
+  if (index == files.end())
     throw ComponentError("the page is not in " + folder.string() + "; build it: ninja -C build page");
-  assets["/"] = index->second;
-  return assets;
+  files["/"] = index->second;
+  return files;
 }
 
 // Takes as long whatever the difference.
@@ -142,7 +143,7 @@ bool is_loopback(const std::string& address) {
 
 struct ScopeServer::Parts {
   Parts(Feed& feed_served, const ScopeOptions& wanted)
-      : feed{feed_served}, options{wanted}, assets{read_page(wanted.page)}, server{make_server(wanted)} {}
+      : feed{feed_served}, options{wanted}, files{read_page(wanted.page)}, server{make_server(wanted)} {}
 
   void answer(const httplib::Request& request, httplib::Response& response);
   void get(const httplib::Request& request, httplib::Response& response);
@@ -153,7 +154,7 @@ struct ScopeServer::Parts {
 
   Feed& feed;
   ScopeOptions options;
-  Assets assets;
+  PageFiles files;
   std::unique_ptr<httplib::Server> server;
   int port = 0;
   std::atomic<int> streams{0};
@@ -201,9 +202,9 @@ void ScopeServer::Parts::get(const httplib::Request& request, httplib::Response&
   if (request.path == "/api/about") return response.set_content(feed.about().dump(), "application/json");
   if (request.path == "/metrics")
     return response.set_content(feed.metrics(), "text/plain; version=0.0.4; charset=utf-8");
-  const auto asset = assets.find(request.path);
-  if (asset == assets.end()) return plain(response, 404, "nothing here; the page is at /");
-  response.set_content(asset->second.content, asset->second.type);
+  const auto file = files.find(request.path);
+  if (file == files.end()) return plain(response, 404, "nothing here; the page is at /");
+  response.set_content(file->second.content, file->second.type);
 }
 
 void ScopeServer::Parts::stream(const httplib::Request& request, httplib::Response& response) {

@@ -15,7 +15,7 @@ constexpr std::int64_t kMarkEvery_ns = 10'000'000'000;                // for the
 constexpr std::int64_t kLeastForRate_ns = 1'000'000'000;              // arrival times scatter by a millisecond
 constexpr std::int64_t kStreamBreaks_ns = 500'000'000;
 
-std::size_t window_length(double seconds, double rate_hz) {
+std::size_t spectrum_length(double seconds, double rate_hz) {
   return std::bit_floor(static_cast<std::size_t>(std::max(64.0, std::numbers::sqrt2 * seconds * rate_hz)));
 }
 
@@ -37,7 +37,7 @@ SensorStream::SensorStream(int sensor, double sample_rate_hz, int teeth)
     : sensor_{sensor},
       teeth_{teeth},
       rate_hz_{sample_rate_hz},
-      length_{window_length(kWindow_s, sample_rate_hz)},
+      length_{spectrum_length(kWindow_s, sample_rate_hz)},
       history_(length_, {kNoSample, kNoSample, kNoSample}),
       window_(length_),
       axis_(length_),

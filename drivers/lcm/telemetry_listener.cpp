@@ -7,7 +7,7 @@ namespace stillcut {
 namespace {
 
 constexpr int kListenForMs = 50;      // how long a wait for messages may delay the thread's end
-constexpr int kQueuedMessages = 256;  // a channel's queue: ten seconds of the most frequent one
+constexpr int kQueuedOfAChannel = 256;  // a channel's queue: ten seconds of the most frequent one
 
 using Decode = Received<TelemetryMessage> (*)(std::span<const std::uint8_t>);
 
@@ -58,7 +58,7 @@ TelemetryListener::TelemetryListener(LcmConnection connection, Handlers handlers
     : connection_{std::move(connection)}, handlers_{std::move(handlers)} {
   for (const Channel& channel : kChannels) {
     subscriptions_.push_back(lcm_subscribe(connection_.get(), channel.name, &TelemetryListener::receive, this));
-    lcm_subscription_set_queue_capacity(subscriptions_.back(), kQueuedMessages);
+    lcm_subscription_set_queue_capacity(subscriptions_.back(), kQueuedOfAChannel);
   }
   thread_ = std::jthread{[this](const std::stop_token& stop) {
     while (!stop.stop_requested())

@@ -20,7 +20,7 @@ import { trendPanel } from './trend_panel';
 
 const staleMs = 1000; // twenty states missed
 const watchMs = 200;
-const peekMs = 400;
+const peekMs = 250; // from the first state on: the rest of what the server knows of a place follows it
 const sources: Record<string, string> = { daemon: 'live', recording: 'recording', simulation: 'simulation' };
 
 function start(about: About): void {
@@ -41,6 +41,8 @@ function start(about: About): void {
   let state: State | null = null;
   let freshState = false;
   let stale = false;
+  let peeking = false;
+  let peekTimer = 0;
   let player: Player | null = null;
   const speed = (): number => player?.speed ?? 1;
 
@@ -52,6 +54,8 @@ function start(about: About): void {
         lobes.setState(state);
         spectrum.setChatter(state.chatter_hz);
         trend.add(state, speed());
+        if (peeking) peekTimer = window.setTimeout(listen, peekMs);
+        peeking = false;
         break;
       case 'spectrum':
         spectrum.show(message.value);
@@ -92,14 +96,17 @@ function start(about: About): void {
   const connection = new Connection(address, live ? 3000 : 30000, receive, () => void reopened());
 
   const listen = (): void => {
+    window.clearTimeout(peekTimer);
+    peeking = false;
     const wanted = !document.hidden && (!player || player.playing);
     if (wanted) connection.open();
     else connection.close();
   };
-  /** Paused: hears for a moment, to show the place that was sought. */
+  /** Paused: hears until the place that was sought is shown, however long the server takes to go there. */
   const peek = (): void => {
+    window.clearTimeout(peekTimer);
+    peeking = true;
     connection.open();
-    window.setTimeout(listen, peekMs);
   };
   if (!live) {
     player = makePlayer(about, (cleared) => {
@@ -118,8 +125,9 @@ function start(about: About): void {
     document.body.classList.toggle('stale', stale);
     const seconds = quantity(silentMs / 1000, 0, 's');
     const ago = `last heard ${seconds} ago`;
-    const words = stale ? (connection.lost ? `connection lost, ${ago}` : live ? `no data, ${ago}` : `waiting for the recording, ${seconds}`)
-      : live || player?.playing ? (live ? 'connected' : 'playing') : 'paused';
+    const silent = live ? `no data, ${ago}` : `waiting for the recording, ${seconds}`;
+    const heard = live ? 'connected' : player?.playing ? 'playing' : 'paused';
+    const words = !stale ? heard : connection.lost ? `connection lost, ${ago}` : silent;
     setText(byId('connection'), connection.refused ? `${words}; ${connection.refused} messages not understood` : words);
     setClass(byId('connection'), `chip${stale ? ' lost' : ''}`);
     if (stale) top.showNoData(`${sentence(words)}.${state ? ` The last state was: ${state.state}.` : ''}`);

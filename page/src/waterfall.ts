@@ -92,7 +92,9 @@ export function waterfall(): Waterfall {
     const whole_s = rowsShown * row_s;
     const step = [0.5, 1, 2, 5, 10, 20, 50, 100, 200].find((s) => (s / whole_s) * height > 2.5 * look().rem * devicePixelRatio);
     for (let s = 0; step && s < whole_s; s += step) {
-      const y = Math.max((s / whole_s) * height, 0.6 * look().rem * devicePixelRatio);
+      const edge = 0.6 * look().rem * devicePixelRatio;
+      const y = Math.max((s / whole_s) * height, edge);
+      if (y > height - edge) break;
       rimmedText(ctx, s ? `−${s} s` : 'now', left - 6 * devicePixelRatio, y, look().muted, 'right');
     }
   };

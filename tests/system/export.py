@@ -76,6 +76,15 @@ def mcap(folder):
     require(all(tuple(float(row[f"{a}_m_per_s2"]) for a in "xyz") == sample for row, sample in zip(rows, samples)),
             "CSV and MCAP hold other samples")
 
+    report = json.loads(folder.stillcut("report", *recording, "--out", "report.html", "--json"))
+    onsets = [e["time_s"] for e in events if e["event"] == "chatter_onset"]  # a kind told later is no episode of its own
+    reported = [f"{e['onset_s']:.6f}" for e in report["episodes"]]
+    require(reported[0] == onsets[0] and set(reported) <= set(onsets), f"the report's onsets are {reported}, not {onsets}")
+    answers = [c["answer"] for e in report["episodes"] for c in e["corrections"]]
+    require("followed" in answers, f"no correction was followed: {answers}")
+    require(report["latency_us"]["tick"]["count"] > 4000, f"the recording lacks the loop's times: {report['latency_us']}")
+    print("  ", report["verdict"])
+
     folder.stillcut("export", *recording, "--mcap", "part.mcap", "--from", "1", "--to", "2")
     part = read_mcap(folder, "part.mcap", begin, begin + 10**10)
     require({t: n for t, n in part["statistics"].items() if "/v" not in t} ==

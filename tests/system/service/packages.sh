@@ -31,7 +31,7 @@ completed() {  # completed WANTED WORD...: what is offered at the last word
     "$work/root/usr/share/bash-completion/completions" "$@")
   [ "$said" = "$wanted" ] || fail "completion of '$*' offers '$said', not '$wanted'"
 }
-completed 'replay' stillcut rep
+completed 'replay' stillcut repl
 completed '--scenario --shadow' stillcut hil --s
 completed 'sdm zoa' stillcut lobes --method ''
 completed '--priority' stillcutd --pri
