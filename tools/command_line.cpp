@@ -24,9 +24,11 @@ int run_stillcut(int argc, char** argv) {
   add_directions_command(app);
   add_patterns_command(app);
   add_doctor_command(app);
+  add_echo_command(app);
   add_export_command(app);
   add_fit_command(app);
   add_hil_command(app);
+  add_hz_command(app);
   add_lobes_command(app);
   add_map_command(app);
   add_passes_command(app);
@@ -39,6 +41,7 @@ int run_stillcut(int argc, char** argv) {
   add_stability_command(app);
   add_surface_command(app);
   add_tap_command(app);
+  add_top_command(app);
   add_trajectory_command(app);
   add_tune_command(app);
   return run_command_line(app, argc, argv);

@@ -1,6 +1,7 @@
 #include "tools/scope_server.hpp"
 
 #include <httplib.h>
+#undef _res  // a name of <resolv.h> that Eigen uses for itself: files may share a unit
 
 #include <algorithm>
 #include <atomic>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <httplib.h>
+#undef _res  // a name of <resolv.h> that Eigen uses for itself: files may share a unit
 
 #include <cmath>
 #include <fstream>
