@@ -38,7 +38,7 @@ def top(folder):
 def killed(folder):
     saw = seen(folder, "killed")
     print("  ", saw)
-    for name, status in (("SIGTERM", 128 + 15), ("SIGINT", 0), ("SIGQUIT", 128 + 3)):
+    for name, status in (("SIGTERM", 128 + 15), ("SIGINT", 0), ("SIGQUIT", 128 + 3), ("SIGTERM after ^S", 128 + 15)):
         end = saw[name]
         require(end["status"] == status, f"{name}: ended with {end['status']}")
         require(end["left_alternate_screen"] and end["cursor_shown"] and end["same"], f"{name}: the terminal is not as it was: {end}")

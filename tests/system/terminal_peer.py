@@ -249,10 +249,14 @@ def top(saw):
 
 
 def killed(saw):
-    for name, number in (("SIGTERM", signal.SIGTERM), ("SIGINT", signal.SIGINT), ("SIGQUIT", signal.SIGQUIT)):
+    for name, number in (("SIGTERM", signal.SIGTERM), ("SIGINT", signal.SIGINT), ("SIGQUIT", signal.SIGQUIT),
+                         ("SIGTERM after ^S", signal.SIGTERM)):
         session = Session(KILLED, "xterm-256color", 80, 24)
         session.until_said(b"no daemon")
         before = len(session.all)
+        if "^S" in name:
+            session.type("\x13")
+            time.sleep(0.5)  # redraws that find the terminal stopped
         for pid in pids_of_top():
             os.kill(pid, number)
         session.until_said(b"KILLED-")
