@@ -172,9 +172,7 @@ double Core::axial_depth() const noexcept {
   return robot_heard_ && std::isfinite(robot_.axial_depth) ? robot_.axial_depth : settings_.axial_depth;
 }
 
-double Core::feed_direction() const noexcept {
-  return robot_heard_ ? robot_.feed_direction : settings_.feed_direction;
-}
+double Core::feed_direction() const noexcept { return robot_heard_ ? robot_.feed_direction : settings_.feed_direction; }
 
 // The depth for which a correction is chosen: while the tool goes deeper that of a second later, up to the nominal one.
 double Core::coming_depth() const noexcept {

@@ -8,7 +8,7 @@ if(CLANG_TIDY)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${rooms})
   set(folder ${PROJECT_BINARY_DIR}/tidy)
   set(stamps)
-  foreach(target stillcut_adapters stillcut_tools stillcut_commands stillcut_models stillcut_model_types stillcut_files stillcut_can stillcut_lcm stillcut_rt stillcut_dsp stillcut stillcutd)
+  foreach(target stillcut_dds stillcut-dds stillcut_adapters stillcut_tools stillcut_commands stillcut_models stillcut_model_types stillcut_files stillcut_can stillcut_lcm stillcut_rt stillcut_dsp stillcut stillcutd)
     get_target_property(sources ${target} SOURCES)
     get_target_property(libraries ${target} LINK_LIBRARIES)
     list(TRANSFORM sources REPLACE ".+" "#include \"\\0\"  // NOLINT(bugprone-suspicious-include)\n" OUTPUT_VARIABLE includes)
@@ -23,7 +23,7 @@ if(CLANG_TIDY)
       COMMAND ${CLANG_TIDY} --quiet --config-file=${PROJECT_SOURCE_DIR}/.clang-tidy --checks=${STILLCUT_TIDY_MORE}
         -p ${PROJECT_BINARY_DIR} ${folder}/${target}.cpp
       COMMAND ${CMAKE_COMMAND} -E touch ${folder}/${target}.ok
-      DEPENDS ${folder}/${target}.cpp ${sources} ${headers} ${PROJECT_SOURCE_DIR}/.clang-tidy stillcut_lcm_types
+      DEPENDS ${folder}/${target}.cpp ${sources} ${headers} ${PROJECT_SOURCE_DIR}/.clang-tidy stillcut_lcm_types stillcut_dds_types
       COMMENT "clang-tidy ${target}")
     list(APPEND stamps ${folder}/${target}.ok)
   endforeach()

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kSilentIsGone_s = 1.5;
 constexpr std::int64_t kFaultShown_ns = 3'000'000'000;
+// How far an event may be stamped after the newest report; more: it is of a daemon before the clock was set back.
+constexpr std::int64_t kAhead_ns = 1'000'000'000;
 constexpr double kWatchIndicator = 0.5;
 constexpr std::int64_t kWatchHeld_ns = 1'000'000'000;
 constexpr std::size_t kMostSpectra = kMaxSensors;
@@ -23,6 +25,8 @@ std::string phrase(const char* format, Values... values) {
   std::snprintf(text.data(), text.size(), format, values...);
   return text.data();
 }
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 
 std::string joined(const std::vector<std::string>& parts) {
   std::string all;
@@ -76,7 +80,8 @@ void CellView::take(const TelemetryMessage& message, std::int64_t received_ns) {
 
 // A daemon without telemetry says at least this much.
 void CellView::take_one(const Status& status) {
-  if (monitor_ && full_reports_) return;
+  if (report_heard_ns_ && seconds_between(*report_heard_ns_, *heard_ns_) <= kSilentIsGone_s) return;
+  monitor_heard_ns_ = heard_ns_;
   MonitorReport report;
   report.stamp_ns = status.stamp_ns;
   report.state = status.state;
@@ -90,10 +95,9 @@ void CellView::take_one(const Status& status) {
 }
 
 void CellView::take_one(const MonitorReport& report) {
-  full_reports_ = true;
+  report_heard_ns_ = monitor_heard_ns_ = heard_ns_;
   monitor_ = report;
-  // Held for a while: people read it, and the indicator moves with every hop.
-  if (report.indicator >= kWatchIndicator) watch_until_ns_ = report.stamp_ns + kWatchHeld_ns;
+  if (report.indicator >= kWatchIndicator) near_limit_ns_ = report.stamp_ns;
 }
 
 void CellView::take_one(const SpectrumReport& report) {
@@ -119,23 +123,32 @@ std::int64_t CellView::events_heard(EventType type) const {
 }
 
 double CellView::silent_s(std::int64_t now_ns) const {
-  return heard_ns_ ? static_cast<double>(now_ns - *heard_ns_) * 1e-9 : kInfinity;
+  return heard_ns_ ? seconds_between(*heard_ns_, now_ns) : kInfinity;
 }
 
 const Correction* CellView::asked() const {
   if (!correction_ || correction_->kind == CorrectionKind::release || !monitor_) return nullptr;
-  const std::int64_t until_ns = correction_->stamp_ns + std::int64_t{correction_->valid_for_ms} * 1'000'000;
-  return monitor_->stamp_ns <= until_ns ? &*correction_ : nullptr;
+  const std::int64_t age_ns = monitor_->stamp_ns - correction_->stamp_ns;
+  const bool valid = age_ns <= std::int64_t{correction_->valid_for_ms} * 1'000'000;
+  return valid && age_ns > -kAhead_ns ? &*correction_ : nullptr;
 }
 
-std::string CellView::why_fault() const {
+// What is behind all that the monitor may doubt.
+std::string CellView::why_nothing_comes(std::int64_t now_ns) const {
+  if (const double silent = seconds_between(*monitor_heard_ns_, now_ns); silent > kSilentIsGone_s)
+    return phrase("the daemon lives, its loop has said nothing for %.0f s; see its log", silent);
   if (health_ && health_->bus_state == static_cast<int>(BusState::down))
     return "the CAN interface is down; see 'stillcut doctor'";
   if (health_ && health_->bus_state == static_cast<int>(BusState::gone))
     return "the CAN interface is gone; see 'stillcut doctor'";
+  return {};
+}
+
+std::string CellView::why_fault() const {
   if (latency_ && !latency_->in_time) return "the loop cannot keep time; see 'stillcut doctor'";
   if (events_.empty() || events_.back().type != EventType::fault || !monitor_) return {};
-  const bool fresh = monitor_->stamp_ns - events_.back().stamp_ns < kFaultShown_ns;
+  const std::int64_t age_ns = monitor_->stamp_ns - events_.back().stamp_ns;
+  const bool fresh = age_ns < kFaultShown_ns && age_ns > -kAhead_ns;
   return std::string(fresh ? text_of(events_.back().note) : std::string_view{});
 }
 
@@ -144,6 +157,7 @@ ShownState CellView::state(std::int64_t now_ns) const {
   if (silent > kSilentIsGone_s || !monitor_)
     return {Shown::no_daemon, std::isinf(silent) ? "nothing was heard of a daemon yet; start it: stillcutd CELL"
                                                  : phrase("nothing was heard of the daemon for %.0f s", silent)};
+  if (std::string why = why_nothing_comes(now_ns); !why.empty()) return {Shown::fault, std::move(why)};
   if (monitor_->doubts != 0) return {Shown::cannot_tell, joined(doubt_names(monitor_->doubts))};
   if (std::string why = why_fault(); !why.empty()) return {Shown::fault, std::move(why)};
   if (health_ && health_->frames == 0) return {Shown::cannot_tell, "no CAN frame was heard yet; see 'stillcut doctor'"};
@@ -170,7 +184,9 @@ ShownState CellView::in_the_cut() const {
     case State::chatter:
       break;
   }
-  if (monitor_->stamp_ns < watch_until_ns_)
+  // Held for a while: people read it, and the indicator moves with every hop.
+  const std::int64_t since_near_ns = near_limit_ns_ ? monitor_->stamp_ns - *near_limit_ns_ : kWatchHeld_ns;
+  if (since_near_ns >= 0 && since_near_ns < kWatchHeld_ns)
     return {Shown::watch, "the indicator comes near the alarm limit; " + depth_sentence(*monitor_)};
   if (monitor_->margin < 0.0) return {Shown::watch, "deeper than the lobes allow: " + depth_sentence(*monitor_)};
   return {Shown::stable, depth_sentence(*monitor_)};

@@ -59,6 +59,8 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
       }
       last_ns = frame.stamp_ns;
       if (robot) robot->playback.feed_until(last_ns, core, take_outputs);
+      core.advance(last_ns);  // what fell due before this frame is told before it
+      take_outputs();
     }
     const bool heard = pipeline.feed(frame);
     if (heard && listener.on_frame) listener.on_frame(pipeline);

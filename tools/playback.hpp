@@ -32,9 +32,9 @@ struct PlaybackSummary {
   double played_s = 0.0;       // from there to the last frame that was played
   std::int64_t frames = 0, frames_bad = 0, frames_lost = 0, frames_out_of_order = 0;
   bool is_recording = false, from_the_start = true;
-  std::int64_t inputs_lost = 0;               // that the recorder had to leave out
+  std::int64_t inputs_lost = 0;             // that the recorder had to leave out
   std::optional<LatencyReport> loop_times;  // the newest that the recording holds
-  std::vector<std::string> warnings;          // lines for the user
+  std::vector<std::string> warnings;        // lines for the user
 };
 
 // `decide`: with the cell's dynamics map, so that predictions and corrections are those of the live run; without it

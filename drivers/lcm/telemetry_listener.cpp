@@ -6,7 +6,7 @@
 namespace stillcut {
 namespace {
 
-constexpr int kListenForMs = 50;      // how long a wait for messages may delay the thread's end
+constexpr int kListenForMs = 50;        // how long a wait for messages may delay the thread's end
 constexpr int kQueuedOfAChannel = 256;  // a channel's queue: ten seconds of the most frequent one
 
 using Decode = Received<TelemetryMessage> (*)(std::span<const std::uint8_t>);

@@ -19,7 +19,7 @@ here=$(ls "$build"/packages/stillcut_*.deb) there=$(ls "$arm64"/packages/stillcu
 dpkg-deb -x "$here" "$work/here"
 dpkg-deb -x "$there" "$work/there"
 programs=("$work"/there/usr/bin/*)
-[ ${#programs[@]} = 8 ] || fail "${#programs[@]} programs in $there, not 8"
+[ ${#programs[@]} = 9 ] || fail "${#programs[@]} programs in $there, not 9"
 for program in "${programs[@]}"; do
   readelf -h "$program" | grep -q 'Machine: *AArch64' || fail "$program is not for arm64"
 done

@@ -115,6 +115,51 @@ TEST(CellView, StatusAloneDoesWhereNoTelemetryComes) {
   EXPECT_EQ(shown_after({in_cut(), status}).shown, Shown::stable) << "the fuller report counts";
 }
 
+// Threads beside the loop go on telling of health and latency when the loop hangs.
+TEST(CellView, ALoopThatSaysNothingIsAFaultHoweverMuchTheDaemonTells) {
+  CellView view;
+  view.take(in_cut(), kNow_ns);
+  for (int i = 1; i <= 5; ++i) {
+    HealthReport health;
+    health.frames = 1;
+    view.take(health, kNow_ns + i * 1'000'000'000LL);
+  }
+  EXPECT_EQ(view.state(kNow_ns + 1'000'000'000).shown, Shown::stable);
+  EXPECT_EQ(view.state(kNow_ns + 5'000'000'000).shown, Shown::fault);
+}
+
+TEST(CellView, ADaemonThatComesBackWithoutTelemetryIsShownByItsStatus) {
+  CellView view;
+  view.take(in_cut(), kNow_ns);
+  Status status;
+  status.state = State::chatter;
+  view.take(status, kNow_ns + 10'000'000'000);
+  EXPECT_EQ(view.state(kNow_ns + 10'000'000'000).shown, Shown::chatter);
+}
+
+// A daemon that starts again after its host's clock was set back.
+TEST(CellView, WhatIsStampedLongAfterThePresentIsNoLongerShown) {
+  const std::int64_t future_ns = kNow_ns + 3'600'000'000'000;
+  EXPECT_EQ(shown_after({in_chatter(), asking(RuntimeMode::active, future_ns)}).shown, Shown::chatter);
+  Event fault;
+  fault.stamp_ns = future_ns;
+  fault.note = short_text("stamp goes back by 0.1 s; frame dropped");
+  EXPECT_EQ(shown_after({in_cut(), fault}).shown, Shown::stable);
+  MonitorReport near = in_cut();
+  near.stamp_ns = future_ns;
+  near.indicator = 0.7;
+  EXPECT_EQ(shown_after({near, in_cut()}).shown, Shown::stable);
+}
+
+TEST(CellView, ABusThatIsDownIsNamedRatherThanTheSilenceThatFollowsFromIt) {
+  MonitorReport silent = in_cut();
+  silent.doubts = kSensorSilent;
+  HealthReport health;
+  health.frames = 1;
+  health.bus_state = 1;
+  EXPECT_EQ(shown_after({silent, health}).shown, Shown::fault);
+}
+
 TEST(CellView, CountsWhatIsAskedForNotItsSetpointsAndKeepsABoundedPast) {
   CellView view;
   for (int i = 0; i < 50; ++i) {

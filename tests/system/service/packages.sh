@@ -35,6 +35,7 @@ completed 'replay' stillcut repl
 completed '--scenario --shadow' stillcut hil --s
 completed 'sdm zoa' stillcut lobes --method ''
 completed '--priority' stillcutd --pri
+completed '--shared-memory' stillcut-dds --sh
 completed '4 12' stillcut-rsi --cycle-ms ''
 
 # An integrator's program, with the package's files alone.

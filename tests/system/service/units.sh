@@ -18,14 +18,14 @@ verify() {
   [ -z "$said" ] || fail "verify says: $said"
 }
 verify "$work"/stillcutd@cell.service "$work"/stillcut-can@can0.service "$work"/stillcut-vcan@vcan0.service \
-  "$work"/stillcut-scope@cell.service "$work"/stillcut-multicast.service
+  "$work"/stillcut-scope@cell.service "$work"/stillcut-dds@cell.service "$work"/stillcut-multicast.service
 
 sed -i 's/^WatchdogSec/WatchDogSec/' "$work/stillcutd@.service"  # the proof that a slip is found
 if (verify "$work"/stillcutd@cell.service) 2> /dev/null; then fail 'a misspelt key passed'; fi
 sed -i 's/^WatchDogSec/WatchdogSec/' "$work/stillcutd@.service"
 
 rate() { systemd-analyze security --offline=true --threshold=20 "$work/${1:-stillcutd@.service}"; }
-for unit in stillcut-scope@.service stillcutd@.service; do
+for unit in stillcut-scope@.service stillcut-dds@.service stillcutd@.service; do
   rate $unit > "$work/rated" || fail "exposure of $unit: $(tail -n 1 "$work/rated")"
   tail -n 1 "$work/rated"
 done
