@@ -12,7 +12,7 @@ from scenario import HERE, main, require
 
 
 def seen(folder, what):
-    for file in ("terminal_peer.py", "adapter_peer.py"):
+    for file in ("terminal_peer.py", "vt100.py", "adapter_peer.py"):
         shutil.copy(HERE / file, folder.path)
     message_classes(folder.path / "classes")
     folder.run("chmod", "-R", "a+rwX", ".")
