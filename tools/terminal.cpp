@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -148,6 +149,9 @@ Terminal::Terminal(bool plain_ascii) : state_{std::make_unique<State>()} {
 }
 
 Terminal::~Terminal() {
+  // After ^S the terminal could not be given back. Linux starts only what was stopped by the same call.
+  tcflow(STDOUT_FILENO, TCOOFF);
+  tcflow(STDOUT_FILENO, TCOON);
   endwin();
   delscreen(state_->screen);
   state_->release_signals();
@@ -160,6 +164,9 @@ Terminal::Size Terminal::size() const {
 }
 
 void Terminal::draw(const std::vector<TextLine>& lines) {
+  // After ^S, or on a link that is full, a frame is not worth waiting for: signals would have to wait as well.
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  if (poll(&output, 1, 0) == 0) return;
   const Size now = size();
   if (now.columns != getmaxx(stdscr) || now.rows != getmaxy(stdscr)) {
     resizeterm(now.rows, now.columns);

@@ -12,7 +12,7 @@ from scenario import HERE, main, require
 
 
 def seen(folder, what):
-    for file in ("terminal_peer.py", "adapter_peer.py"):
+    for file in ("terminal_peer.py", "vt100.py", "adapter_peer.py"):
         shutil.copy(HERE / file, folder.path)
     message_classes(folder.path / "classes")
     folder.run("chmod", "-R", "a+rwX", ".")
@@ -38,7 +38,7 @@ def top(folder):
 def killed(folder):
     saw = seen(folder, "killed")
     print("  ", saw)
-    for name, status in (("SIGTERM", 128 + 15), ("SIGINT", 0), ("SIGQUIT", 128 + 3)):
+    for name, status in (("SIGTERM", 128 + 15), ("SIGINT", 0), ("SIGQUIT", 128 + 3), ("SIGTERM after ^S", 128 + 15)):
         end = saw[name]
         require(end["status"] == status, f"{name}: ended with {end['status']}")
         require(end["left_alternate_screen"] and end["cursor_shown"] and end["same"], f"{name}: the terminal is not as it was: {end}")
