@@ -77,6 +77,7 @@ void replay(const ReplayOptions& options) {
   Core& core = pipeline.core();
   Predictor predictor{cell};
   const PlaybackFiles files = playback_files(options.can, options.lcm);
+  refuse_to_overwrite(files, {options.events, options.plot});
   if (!files.note.empty()) std::cerr << "stillcut: " << files.note << '\n';
   RecordedFrames log{files.can};
   RobotPlayback robot{files.lcm, options.lcm_offset_s, predictor};
