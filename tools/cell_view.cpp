@@ -100,6 +100,11 @@ void CellView::take_one(const MonitorReport& report) {
   if (report.indicator >= kWatchIndicator) near_limit_ns_ = report.stamp_ns;
 }
 
+void CellView::take_one(const LatencyReport& report) {
+  if (!latency_ || report.ticks != latency_->ticks) ticked_ns_ = heard_ns_;
+  latency_ = report;
+}
+
 void CellView::take_one(const SpectrumReport& report) {
   if (spectra_.size() < kMostSpectra || spectra_.contains(report.sensor)) spectra_[report.sensor] = report;
 }
@@ -134,13 +139,16 @@ const Correction* CellView::asked() const {
 }
 
 // What is behind all that the monitor may doubt.
-std::string CellView::why_nothing_comes(std::int64_t now_ns) const {
-  if (const double silent = seconds_between(*monitor_heard_ns_, now_ns); silent > kSilentIsGone_s)
-    return phrase("the daemon lives, its loop has said nothing for %.0f s; see its log", silent);
+std::optional<ShownState> CellView::nothing_comes(std::int64_t now_ns) const {
+  if (const double silent = seconds_between(*monitor_heard_ns_, now_ns); silent > kSilentIsGone_s) {
+    const bool ticks = ticked_ns_ && seconds_between(*ticked_ns_, now_ns) <= kSilentIsGone_s;
+    if (ticks) return ShownState{Shown::cannot_tell, "the daemon runs and tells nothing of the cut; see its log"};
+    return ShownState{Shown::fault, phrase("the daemon lives, its loop stands still for %.0f s; see its log", silent)};
+  }
   if (health_ && health_->bus_state == static_cast<int>(BusState::down))
-    return "the CAN interface is down; see 'stillcut doctor'";
+    return ShownState{Shown::fault, "the CAN interface is down; see 'stillcut doctor'"};
   if (health_ && health_->bus_state == static_cast<int>(BusState::gone))
-    return "the CAN interface is gone; see 'stillcut doctor'";
+    return ShownState{Shown::fault, "the CAN interface is gone; see 'stillcut doctor'"};
   return {};
 }
 
@@ -157,7 +165,7 @@ ShownState CellView::state(std::int64_t now_ns) const {
   if (silent > kSilentIsGone_s || !monitor_)
     return {Shown::no_daemon, std::isinf(silent) ? "nothing was heard of a daemon yet; start it: stillcutd CELL"
                                                  : phrase("nothing was heard of the daemon for %.0f s", silent)};
-  if (std::string why = why_nothing_comes(now_ns); !why.empty()) return {Shown::fault, std::move(why)};
+  if (std::optional<ShownState> nothing = nothing_comes(now_ns)) return *std::move(nothing);
   if (monitor_->doubts != 0) return {Shown::cannot_tell, joined(doubt_names(monitor_->doubts))};
   if (std::string why = why_fault(); !why.empty()) return {Shown::fault, std::move(why)};
   if (health_ && health_->frames == 0) return {Shown::cannot_tell, "no CAN frame was heard yet; see 'stillcut doctor'"};

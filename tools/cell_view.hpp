@@ -66,15 +66,16 @@ class CellView {
   void take_one(const VibrationReport& /*report*/) {}
   void take_one(const DiagramReport& report) { diagram_ = report; }
   void take_one(const HealthReport& report) { health_ = report; }
-  void take_one(const LatencyReport& report) { latency_ = report; }
+  void take_one(const LatencyReport& report);
   void take_one(const HistogramReport& report) { histogram_ = report; }
-  [[nodiscard]] std::string why_nothing_comes(std::int64_t now_ns) const;
+  [[nodiscard]] std::optional<ShownState> nothing_comes(std::int64_t now_ns) const;
   [[nodiscard]] std::string why_fault() const;
   [[nodiscard]] ShownState in_the_cut() const;
 
   std::optional<std::int64_t> heard_ns_;
   std::optional<std::int64_t> report_heard_ns_;   // a monitor's report: status says less
   std::optional<std::int64_t> monitor_heard_ns_;  // either
+  std::optional<std::int64_t> ticked_ns_;         // when the loop was last known to have ticked on
   std::optional<MonitorReport> monitor_;
   std::optional<std::int64_t> near_limit_ns_;  // data time at which the indicator was last near the alarm limit
   std::optional<DiagramReport> diagram_;

@@ -15,6 +15,7 @@
 #include "tools/export_samples.hpp"
 #include "tools/output_file.hpp"
 #include "tools/playback.hpp"
+#include "tools/recorded_frames.hpp"
 #include "tools/sample_window.hpp"
 
 namespace stillcut {
@@ -187,6 +188,8 @@ void export_recording(const ExportOptions& options) {
   if (sensors.empty())
     throw InputError(options.cell, cell.can->line, "can.accelerometer: is missing; add a [[can.accelerometer]] table");
 
+  refuse_to_overwrite(playback_files(options.source.can, options.source.lcm),
+                      {options.csv, options.events, options.wav, options.uff, options.mcap});
   ExportFiles files{options, sensors, static_cast<std::size_t>(std::max(options.sensor, 1) - 1)};
   SampleWindow window{sensors, options.from_s, options.to_s};
   double speed_rpm = kNaN;

@@ -13,6 +13,7 @@
 #include "tools/commands.hpp"
 #include "tools/event_csv.hpp"
 #include "tools/event_tally.hpp"
+#include "tools/output_comparison.hpp"
 #include "tools/pipeline.hpp"
 #include "tools/plot_replay.hpp"
 #include "tools/predictor.hpp"
@@ -36,38 +37,6 @@ std::ofstream open_for_writing(const std::string& file) {
   return out;
 }
 
-// Events and corrections decided again, beside those that the live run published.
-class OutputComparison {
- public:
-  void add(const Output& output) {
-    if (output.type == Output::Type::event) decided_.push_back(encode(output.event));
-    if (output.type == Output::Type::correction) decided_.push_back(encode(output.correction));
-  }
-  [[nodiscard]] std::size_t count() const { return decided_.size(); }
-  // How many from the first on are the same, bit for bit.
-  [[nodiscard]] std::size_t same_as(const std::vector<MessageBytes>& published) const {
-    const auto differ = std::mismatch(decided_.begin(), decided_.end(), published.begin(), published.end());
-    return static_cast<std::size_t>(differ.first - decided_.begin());
-  }
-
- private:
-  std::vector<MessageBytes> decided_;
-};
-
-// A recording is decided again as it was, unless something is missing of it.
-void warn_of_differences(const PlaybackFiles& files, const RobotPlayback& robot, const OutputComparison& comparison) {
-  const std::size_t same = comparison.same_as(robot.published());
-  if (robot.lobes_missing() > 0)
-    std::cerr << "stillcut: " << robot.lobes_missing() << " stability lobe diagrams cannot be made again\n";
-  if (same == std::min(comparison.count(), robot.published().size())) return;  // a crash may cut one of them short
-  std::cerr << "stillcut: the live run decided otherwise from its decision " << same + 1 << " of "
-            << robot.published().size() << " on: "
-            << (!files.from_the_start ? "the beginning of this recording was deleted"
-                : robot.lost() > 0    ? "the recording has holes"
-                                      : "is this the cell file of that run?")
-            << '\n';
-}
-
 void replay(const ReplayOptions& options) {
   if (options.json && options.events == "-") {
     throw CLI::ValidationError("--events", "'-' and --json both want standard output; name a file for the events");
@@ -77,6 +46,7 @@ void replay(const ReplayOptions& options) {
   Core& core = pipeline.core();
   Predictor predictor{cell};
   const PlaybackFiles files = playback_files(options.can, options.lcm);
+  refuse_to_overwrite(files, {options.events, options.plot});
   if (!files.note.empty()) std::cerr << "stillcut: " << files.note << '\n';
   RecordedFrames log{files.can};
   RobotPlayback robot{files.lcm, options.lcm_offset_s, predictor};
@@ -100,7 +70,7 @@ void replay(const ReplayOptions& options) {
   const auto take_outputs = [&] {
     for (const Output& output : core.outputs()) {
       if (publisher) publisher->publish(output);
-      if (robot.is_recording()) comparison.add(output);
+      comparison.add(output, robot);
       if (output.type != Output::Type::event) continue;
       tally.count(output.event);
       if (!options.events.empty()) write_event(events, output.event, core.origin_ns());
@@ -132,7 +102,8 @@ void replay(const ReplayOptions& options) {
   if (const std::string warning = log.warning(); !warning.empty()) std::cerr << "stillcut: " << warning << '\n';
   if (robot.bad() > 0)
     std::cerr << "stillcut: " << files.lcm.front().string() << ": " << robot.bad() << " bad messages passed over\n";
-  if (robot.is_recording()) warn_of_differences(files, robot, comparison);
+  for (const std::string& warning : comparison.warnings(robot, files.from_the_start))
+    std::cerr << "stillcut: " << warning << '\n';
   if (trace) plot_replay(trace->finish(), options.plot);
   const std::int64_t bad = log.frames_bad() + pipeline.decoder().counters().frames_bad;
   if (options.json) {

@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/output_file.hpp"
 #include "tools/playback.hpp"
+#include "tools/recorded_frames.hpp"
 #include "tools/report_collector.hpp"
 #include "tools/report_page.hpp"
 #include "tools/report_words.hpp"
@@ -25,6 +26,7 @@ void write_report(const ReportOptions& options) {
   if (options.out == "-" && options.json)
     throw CLI::ValidationError("--out", "'-' and --json both want standard output; name a file for the page");
   const Cell cell = read_cell(options.cell, {.bus = false});
+  refuse_to_overwrite(playback_files(options.source.can, options.source.lcm), {options.out});
   ReportCollector collector{cell, options.out.empty() ? 0 : options.pictures};
   std::optional<OutputFile> page;
   if (!options.out.empty()) page.emplace(options.out);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tools/output_comparison.hpp"
 #include "tools/predictor.hpp"
 #include "tools/progress.hpp"
 #include "tools/recorded_frames.hpp"
@@ -41,9 +42,12 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
     if (!prediction.warning.empty()) summary.warnings.push_back(prediction.warning);
     if (!cell.measures) core.add_lobes(prediction.diagram);  // as the daemon
   }
+  OutputComparison comparison;
   const auto take_outputs = [&] {
-    for (const Output& output : core.outputs())
+    for (const Output& output : core.outputs()) {
+      if (robot) comparison.add(output, robot->playback);
       if (decide && listener.on_output) listener.on_output(output, core);
+    }
     core.clear_outputs();
   };
 
@@ -86,9 +90,8 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
   if (played.bad() > 0)
     summary.warnings.push_back(files.lcm.front().string() + ": " + std::to_string(played.bad()) +
                                " bad messages passed over");
-  if (played.lobes_missing() > 0)
-    summary.warnings.push_back(std::to_string(played.lobes_missing()) +
-                               " stability lobe diagrams cannot be made again");
+  for (std::string& line : comparison.warnings(played, files.from_the_start))
+    summary.warnings.push_back(std::move(line));
   return summary;
 }
 

@@ -32,6 +32,15 @@ PlaybackFiles playback_files(const std::string& can, const std::string& lcm) {
   return files;
 }
 
+void refuse_to_overwrite(const PlaybackFiles& files, std::initializer_list<std::string> outputs) {
+  std::error_code not_there;
+  for (const std::string& output : outputs)
+    for (const auto* logs : {&files.can, &files.lcm})
+      for (const std::filesystem::path& log : *logs)
+        if (!output.empty() && std::filesystem::equivalent(output, log, not_there))
+          throw InputError(output, 0, "is of the recording that is to be played; name another file to write");
+}
+
 RecordedFrames::RecordedFrames(const std::vector<std::filesystem::path>& logs)
     : logs_(logs.begin(), logs.end()), single_{logs.size() == 1} {
   std::error_code no_size;  // a pipe has none

@@ -21,6 +21,9 @@ struct PlaybackFiles {
 // `can`: a log, a recording's folder (its newest recording) or FOLDER/NAME; `lcm`: a log, or empty. Throws InputError.
 PlaybackFiles playback_files(const std::string& can, const std::string& lcm);
 
+// Throws InputError where one of the `outputs` (empty: none) is a file that is to be played: opening it would empty it.
+void refuse_to_overwrite(const PlaybackFiles& files, std::initializer_list<std::string> outputs);
+
 class RecordedFrames {
  public:
   // Throws InputError when a single log has no valid frame, or none of several.

@@ -119,13 +119,18 @@ TEST(CellView, StatusAloneDoesWhereNoTelemetryComes) {
 TEST(CellView, ALoopThatSaysNothingIsAFaultHoweverMuchTheDaemonTells) {
   CellView view;
   view.take(in_cut(), kNow_ns);
+  LatencyReport latency;
   for (int i = 1; i <= 5; ++i) {
     HealthReport health;
     health.frames = 1;
     view.take(health, kNow_ns + i * 1'000'000'000LL);
+    view.take(latency, kNow_ns + i * 1'000'000'000LL);
   }
   EXPECT_EQ(view.state(kNow_ns + 1'000'000'000).shown, Shown::stable);
   EXPECT_EQ(view.state(kNow_ns + 5'000'000'000).shown, Shown::fault);
+  latency.ticks = 1000;  // without telemetry, before the first frame
+  view.take(latency, kNow_ns + 6'000'000'000LL);
+  EXPECT_EQ(view.state(kNow_ns + 6'000'000'000).shown, Shown::cannot_tell);
 }
 
 TEST(CellView, ADaemonThatComesBackWithoutTelemetryIsShownByItsStatus) {

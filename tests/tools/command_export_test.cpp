@@ -213,6 +213,27 @@ TEST(Export, WhatCannotBeExportedIsRefusedInOneLineAndLeavesNoFile) {
   }
 }
 
+// Opened for writing, a recording would be gone before it is read.
+TEST(Export, NoCommandWritesOverTheRecordingThatItReads) {
+  const DemoCell files;
+  files.simulate("0.1", "0:3");
+  const std::string log = content_of(files.path() / "cut.log");
+  std::filesystem::create_symlink("cut.log", files.path() / "link.csv");
+  for (const auto& [command, output] : std::vector<std::pair<std::string, std::string>>{{"export", "--csv"},
+                                                                                        {"export", "--wav"},
+                                                                                        {"export", "--mcap"},
+                                                                                        {"report", "--out"},
+                                                                                        {"replay", "--events"},
+                                                                                        {"replay", "--plot"}}) {
+    for (const char* file : {"./cut.log", "link.csv"}) {
+      const Finished ended = run({"stillcut", command, "cell.toml", "--can", "cut.log", output, file}, files.path());
+      EXPECT_EQ(ended.exit_code, 3) << command << ended.out;
+      EXPECT_THAT(ended.err, HasSubstr("name another file"));
+      ASSERT_TRUE(content_of(files.path() / "cut.log") == log) << command << ' ' << output;
+    }
+  }
+}
+
 TEST(Export, AClockThatWasSetByHoursIsNotFilledWithSilence) {
   const DemoCell files;
   files.simulate("0.2", "0:3");

@@ -48,6 +48,13 @@ TEST(DaemonRecording, OfTheCellsFolderIsPlayedAgain) {
   EXPECT_EQ(summary["same_outputs"], summary["recorded_outputs"]);
   EXPECT_EQ(summary["same_outputs"], summary["replayed_outputs"]);
   EXPECT_EQ(again.err, "");
+  for (const char* end_s : {"0.3", "1", "2", "100"}) {
+    const Finished part =
+        run({"stillcut", "export", "cell.toml", "--can", "recording", "--mcap", "part.mcap", "--to", end_s, "--json"},
+            cell.path());
+    ASSERT_EQ(part.exit_code, 0) << part.err;
+    EXPECT_EQ(part.err, "") << end_s;
+  }
 }
 
 // Played with another cell file it is decided otherwise, and that is said.
@@ -55,9 +62,14 @@ TEST(DaemonRecording, OfAnotherCellIsToldApart) {
   const RecordedCell cell;
   ASSERT_EQ(run({"stillcutd", "cell.toml"}, cell.path()).exit_code, 0);
   cell.change("mode = \"shadow\"", "mode = \"off\"");
-  const Finished again = run({"stillcut", "replay", "cell.toml", "--can", "recording", "--json"}, cell.path());
-  ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_NE(again.err.find("is this the cell file of that run?"), std::string::npos) << again.err;
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"replay"}, {"report"}, {"export", "--mcap", "all.mcap"}, {"export", "--events", "some.csv", "--to", "2"}}) {
+    std::vector<std::string> arguments{"stillcut", command[0], "cell.toml", "--can", "recording", "--json"};
+    arguments.insert(arguments.end(), command.begin() + 1, command.end());
+    const Finished again = run(arguments, cell.path());
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.err.find("is this the cell file of that run?"), std::string::npos) << command[0] << again.err;
+  }
 }
 
 TEST(DaemonRecording, IsMarkedByTheOperatorsSignal) {
