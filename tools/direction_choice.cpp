@@ -12,9 +12,9 @@
 namespace stillcut {
 namespace {
 
-std::string number_text(double value) { return csv_number(as_given(value)); }
+std::string choice_number(double value) { return csv_number(as_given(value)); }
 
-std::string turn_text(double angle) { return number_text(rad_to_deg(angle)) + "°"; }
+std::string turn_text(double angle) { return choice_number(rad_to_deg(angle)) + "°"; }
 
 std::string limit_text(double depth, double max_depth) {
   std::ostringstream text;
@@ -139,7 +139,7 @@ void print_choice(const DirectionsResult& result, std::ostream& out) {
     return;
   }
   if (result.asked.xs) {
-    out << "best placement: part moved by " << number_text(1e3 * placed->x) << ", " << number_text(1e3 * placed->y)
+    out << "best placement: part moved by " << choice_number(1e3 * placed->x) << ", " << choice_number(1e3 * placed->y)
         << " mm: every posture takes at least " << limit_text(placed->limit, max_depth)
         << " in its best direction (least: " << result.tasks[placed->weakest] << ")";
     const auto here = std::find_if(placements.begin(), placements.end(),

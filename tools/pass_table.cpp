@@ -52,7 +52,7 @@ struct TableOf {
   }
 };
 
-std::string padded(std::string text, std::size_t width) {
+std::string column_text(std::string text, std::size_t width) {
   text.resize(std::max(width, text.size() + 1), ' ');
   return text;
 }
@@ -117,15 +117,15 @@ std::vector<PassRow> pass_rows(const std::vector<PassRun>& runs) {
 
 void print_pass_table(std::ostream& out, const std::vector<PassRun>& runs, const std::vector<PassRow>& rows) {
   constexpr int kQuantity = 57, kColumn = 20;
-  out << padded("", kQuantity) << padded("paper", 9);
-  for (const PassRun& run : runs) out << padded(pass_name(run.pass), kColumn);
+  out << column_text("", kQuantity) << column_text("paper", 9);
+  for (const PassRun& run : runs) out << column_text(pass_name(run.pass), kColumn);
   out << '\n';
   for (const PassRow& row : rows) {
     const auto paper =
         std::find_if(row.paper.begin(), row.paper.end(), [](double value) { return !std::isnan(value); });
-    out << padded(std::string(row.quantity).append(" [").append(row.unit).append("]"), kQuantity)
-        << padded(paper == row.paper.end() ? "" : cell_text(*paper), 9);
-    for (const double value : row.ours) out << padded(cell_text(value), kColumn);
+    out << column_text(std::string(row.quantity).append(" [").append(row.unit).append("]"), kQuantity)
+        << column_text(paper == row.paper.end() ? "" : cell_text(*paper), 9);
+    for (const double value : row.ours) out << column_text(cell_text(value), kColumn);
     out << '\n';
   }
 }

@@ -70,7 +70,7 @@ Json sensor_json(const ReportSensor& sensor) {
 }
 
 template <class Thing, class ToJson>
-Json list_of(const std::vector<Thing>& things, ToJson to_json) {
+Json json_list(const std::vector<Thing>& things, ToJson to_json) {
   Json list = Json::array();
   for (const Thing& thing : things) list.push_back(to_json(thing));
   return list;
@@ -99,10 +99,10 @@ nlohmann::ordered_json report_json(const Report& report) {
             {"inputs_not_recorded", report.inputs_lost}};
   for (std::size_t s = 0; s < kNames.size(); ++s) json["time_s"][kNames[s]] = report.state_s[s];
   json["forced_vibrations"] = report.forced_vibrations;
-  json["cuts"] = list_of(report.cuts, cut_json);
-  json["episodes"] = list_of(report.episodes, episode_json);
-  json["sensors"] = list_of(report.sensors, sensor_json);
-  json["faults"] = list_of(report.faults, [](const ReportFault& fault) {
+  json["cuts"] = json_list(report.cuts, cut_json);
+  json["episodes"] = json_list(report.episodes, episode_json);
+  json["sensors"] = json_list(report.sensors, sensor_json);
+  json["faults"] = json_list(report.faults, [](const ReportFault& fault) {
     return Json{{"what", fault.what}, {"count", fault.count}, {"first_s", fault.first_s}, {"last_s", fault.last_s}};
   });
   json["latency_us"] = nullptr;

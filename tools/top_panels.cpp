@@ -35,7 +35,7 @@ const char* event_words(EventType type) {
   return kWords[static_cast<std::size_t>(type) % kWords.size()];
 }
 
-TextLine event_line(const Event& event) {
+TextLine event_row(const Event& event) {
   const bool chatter = event.type == EventType::chatter_onset || event.type == EventType::chatter_end;
   const Ink ink = event.type == EventType::chatter_onset || event.type == EventType::fault ? Ink::alarm : Ink::plain;
   std::string what = event_words(event.type);
@@ -113,7 +113,7 @@ TopPanel corrections_panel(const CellView& view, int columns) {
 }
 
 TopPanel events_panel(const CellView& view, int columns) {
-  return list_panel("Events, newest first", view.events(), columns, event_line);
+  return list_panel("Events, newest first", view.events(), columns, event_row);
 }
 
 }  // namespace stillcut
