@@ -1,6 +1,7 @@
 #include "tools/cell_stream.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tools/cell_json.hpp"
 
@@ -41,9 +42,11 @@ void CellStream::take(const TelemetryMessage& message, std::int64_t received_ns)
       emit("latency", "latency", latency_json(*view_.latency(), histogram ? &*histogram : nullptr, origin_ns_));
   }
   if (const auto* event = std::get_if<Event>(&message)) emit("event", {}, event_json(*event, origin_ns_));
-  if (std::holds_alternative<Correction>(message) && view_.corrections().back().sequence != correction_told_) {
-    correction_told_ = view_.corrections().back().sequence;
-    emit("correction", {}, correction_json(view_.corrections().back(), origin_ns_));
+  if (std::holds_alternative<Correction>(message)) {
+    const Correction& newest = view_.corrections().back();
+    // A daemon that starts again counts from the beginning.
+    const std::pair<std::int64_t, std::int64_t> which{newest.sequence, newest.stamp_ns};
+    if (std::exchange(correction_told_, which) != which) emit("correction", {}, correction_json(newest, origin_ns_));
   }
   tell_news(received_ns);
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "tools/cell_view.hpp"
 
@@ -43,7 +44,7 @@ class CellStream {
   CellView view_;
   Shown shown_ = Shown::no_daemon;
   std::string reason_;
-  std::int64_t correction_told_ = -1;  // its sequence
+  std::pair<std::int64_t, std::int64_t> correction_told_{-1, 0};  // its sequence and stamp
 };
 
 // `event: NAME`, `data: JSON`.

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -39,7 +40,8 @@ class PublisherThread {
     thread_ = std::jthread{[this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
         drain();
-        if (const std::int64_t now_ns = realtime_ns(); now_ns - times_told_ns_ >= kTellTimesEvery_ns) {
+        // Clocks are set back, too.
+        if (const std::int64_t now_ns = realtime_ns(); std::abs(now_ns - times_told_ns_) >= kTellTimesEvery_ns) {
           times_told_ns_ = now_ns;
           publisher_.publish(TelemetryMessage{latency_report(channels_.times, now_ns)});
         }

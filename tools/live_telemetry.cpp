@@ -1,6 +1,7 @@
 #include "tools/live_telemetry.hpp"
 
 #include <chrono>
+#include <cstdlib>
 
 namespace stillcut {
 namespace {
@@ -22,7 +23,7 @@ TelemetryThread::TelemetryThread(const Cell& cell, const Decoder& decoder, LoopC
 void TelemetryThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     drain();
-    if (realtime_ns() - health_told_ns_ >= kHealthEvery_ns) tell_health();
+    if (std::abs(realtime_ns() - health_told_ns_) >= kHealthEvery_ns) tell_health();  // clocks are set back, too
     std::this_thread::sleep_for(kPollWatched);
   }
 }

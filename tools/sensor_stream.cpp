@@ -115,7 +115,8 @@ VibrationReport SensorStream::take_vibration() {
 
 SpectrumReport SensorStream::spectrum(double spindle_hz) {
   SpectrumReport report{.stamp_ns = 0, .sensor = sensor_, .teeth = teeth_, .levels = {}};
-  if (static_cast<std::size_t>(heard_) < length_) return report;
+  if (static_cast<std::size_t>(heard_) < length_ || heard_ == shown_) return report;
+  shown_ = heard_;
   const double bin_hz = rate_hz_ / static_cast<double>(length_);
   const auto shown = std::min(bins_.size(), static_cast<std::size_t>(kHighest_hz / bin_hz) + 1);
   const std::size_t pool = (shown + SpectrumReport::kMaxBins - 1) / SpectrumReport::kMaxBins;

@@ -19,7 +19,7 @@ class SensorStream {
 
   void add(const SampleBlock& block);
 
-  // Of the last 0.16 s; no levels before so much was heard.
+  // Of the last 0.16 s; no levels before so much was heard, and none again before more is.
   [[nodiscard]] SpectrumReport spectrum(double spindle_hz);
   // The thinned samples since the last call, oldest first, at most as many as a report holds.
   [[nodiscard]] VibrationReport take_vibration();
@@ -43,6 +43,7 @@ class SensorStream {
   std::vector<std::array<float, kMaxAxes>> history_;  // round and round, `length_` long; NaN: lost or not measured
   std::size_t next_ = 0;                              // where in it the next sample goes
   std::int64_t heard_ = 0;                            // samples so far, with those lost
+  std::int64_t shown_ = 0;                            // of them at the last spectrum
   std::vector<float> window_, axis_;
   std::vector<std::complex<float>> bins_;
   RealFft fft_;

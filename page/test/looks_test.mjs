@@ -150,6 +150,8 @@ test('NothingIsCutOffFromPhoneToWall', async () => {
       });
       const spilled = [...document.querySelectorAll('.value, #state-word, #state-reason, h2, .caption')]
         .filter((e) => e.scrollWidth > e.clientWidth + 1);
+      const flat = [...document.querySelectorAll('.chart')].filter((e) => e.querySelector('.u-over').clientHeight < 30);
+      wide.push(...flat);
       return { scroll: document.documentElement.scrollWidth - innerWidth, wide: [...wide, ...spilled].map((e) => `${e.tagName}#${e.id}.${e.className}`) };
     });
     assert.ok(found.scroll <= 0, `${width} px: ${found.scroll} px to scroll sideways`);

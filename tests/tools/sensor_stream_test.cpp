@@ -63,6 +63,18 @@ TEST(SensorStream, ALineShowsItsAmplitudeAndFrequencyWhateverTheyAre) {
   }
 }
 
+// A sensor that falls silent in chatter must not go on to chatter in the picture.
+TEST(SensorStream, ASensorThatIsSilentShowsNoSpectrumAgain) {
+  SensorStream stream{0, 25600.0, 2};
+  Sender sender{25600.0};
+  const auto noise = [](double t) { return std::sin(4000.0 * t); };
+  sender.send(stream, 600, noise);
+  EXPECT_FALSE(stream.spectrum(50.0).levels.empty());
+  EXPECT_TRUE(stream.spectrum(50.0).levels.empty());
+  sender.send(stream, 1, noise);
+  EXPECT_FALSE(stream.spectrum(50.0).levels.empty());
+}
+
 TEST(SensorStream, ThinnedSamplesKeepWhatIsSlowAndStandAtItsTime) {
   SensorStream stream{0, 25600.0, 2};
   Sender sender{25600.0};
