@@ -24,7 +24,8 @@ Json number_json(double value, double scale = 1.0) {
 }
 Json text_json(const ShortText& text) { return std::string(text_of(text)); }
 double since(std::int64_t stamp_ns, std::int64_t origin_ns) {
-  return static_cast<double>((stamp_ns - origin_ns) / 1000) / 1e6;  // divided: the shortest decimals
+  const std::int64_t us = (stamp_ns - origin_ns) / 1000;
+  return static_cast<double>(us) / 1e6;  // divided: the shortest decimals
 }
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;

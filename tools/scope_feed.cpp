@@ -47,7 +47,7 @@ class LiveReader : public FeedReader {
   Chunk next(std::chrono::milliseconds longest) override {
     std::unique_lock lock{feed_.mutex_};
     if (!feed_.more_.wait_for(lock, longest, [this] { return !queue_.empty(); })) return nullptr;
-    const Chunk chunk = std::move(queue_.front());
+    Chunk chunk = std::move(queue_.front());
     queue_.pop_front();
     return chunk;
   }
@@ -58,7 +58,7 @@ class LiveReader : public FeedReader {
 };
 
 LiveFeed::LiveFeed(FeedTitle title)
-    : title_{std::move(title)}, stream_{0, [this](StreamItem item) { emit(std::move(item)); }} {}
+    : title_{std::move(title)}, stream_{0, [this](const StreamItem& item) { emit(item); }} {}
 
 void LiveFeed::take(const TelemetryMessage& message) {
   const std::scoped_lock lock{mutex_};
@@ -71,7 +71,7 @@ void LiveFeed::tick() {
 }
 
 // Under the lock.
-void LiveFeed::emit(StreamItem item) {
+void LiveFeed::emit(const StreamItem& item) {
   if (item.newest_of == "state") state_told_ns_ = monotonic_ns();
   if (item.newest_of.empty()) {
     past_.push_back(item.chunk);

@@ -59,7 +59,7 @@ class LiveFeed : public Feed {
   friend class LiveReader;
   using Queue = std::deque<Chunk>;
 
-  void emit(StreamItem item);
+  void emit(const StreamItem& item);
   void fill(Queue& queue) const;
 
   FeedTitle title_;

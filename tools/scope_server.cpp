@@ -17,7 +17,7 @@ namespace stillcut {
 
 struct PageFile {
   std::string content;
-  const char* type;
+  const char* type = "";
 };
 using PageFiles = std::map<std::string, PageFile>;  // by path, "/" among them
 
