@@ -10,7 +10,8 @@
 namespace stillcut::plot {
 namespace {
 
-constexpr double kLeft = 92, kRight = 28, kScaleRight = 92, kTop = 24, kBottom = 52, kBetween = 20, kTitleRoom = 20;
+constexpr double kLeft = 92, kRight = 28, kScaleRight = 92, kTop = 24, kAbove = 10, kBottom = 52, kBetween = 20,
+                 kTitleRoom = 20;
 constexpr double kSmall = kSmallText, kMiddle = kPanelText, kLarge = 19.0;
 constexpr Color kGrid{0.90, 0.90, 0.92}, kFrame{0.45, 0.45, 0.48};
 
@@ -215,11 +216,12 @@ void draw_texts(Canvas& canvas, const View& view, const Panel& panel) {
   }
 }
 
-void draw_figure(const Figure& figure, Canvas& canvas) {
+// room_above: of the first panel, under what titles there are, px.
+void draw_figure(const Figure& figure, double room_above, Canvas& canvas) {
   double top = kTop;
   if (!figure.title.empty()) canvas.text(kLeft, top += 14, figure.title, {.size = kLarge, .bold = true});
   if (!figure.subtitle.empty()) canvas.text(kLeft, top += 24, figure.subtitle, {.size = kMiddle, .color = kFrame});
-  top += figure.title.empty() ? -kBetween : 10;  // nothing for the panels to stand off from
+  top += room_above;
 
   double shares = 0.0;
   bool with_scale = false;
@@ -265,13 +267,14 @@ void draw_figure(const Figure& figure, Canvas& canvas) {
 
 void write_figure(const Figure& figure, const std::filesystem::path& file) {
   Canvas canvas(file, figure.width, figure.height);
-  draw_figure(figure, canvas);
+  draw_figure(figure, kAbove, canvas);
 }
 
 std::string figure_bytes(const Figure& figure, Format format) {
   std::string bytes;
   Canvas canvas(bytes, format, figure.width, figure.height);
-  draw_figure(figure, canvas);
+  // Without a title there is nothing for the panels to stand off from: the page has its own.
+  draw_figure(figure, figure.title.empty() ? -kBetween : kAbove, canvas);
   return bytes;
 }
 
