@@ -216,12 +216,12 @@ void draw_texts(Canvas& canvas, const View& view, const Panel& panel) {
   }
 }
 
-// room_above: of the first panel, under what titles there are, px.
-void draw_figure(const Figure& figure, double room_above, Canvas& canvas) {
+// under_titles: room between them, or the upper edge, and the first panel, px.
+void draw_figure(const Figure& figure, double under_titles, Canvas& canvas) {
   double top = kTop;
   if (!figure.title.empty()) canvas.text(kLeft, top += 14, figure.title, {.size = kLarge, .bold = true});
   if (!figure.subtitle.empty()) canvas.text(kLeft, top += 24, figure.subtitle, {.size = kMiddle, .color = kFrame});
-  top += room_above;
+  top += under_titles;
 
   double shares = 0.0;
   bool with_scale = false;
