@@ -31,13 +31,17 @@ std::filesystem::path page_folder() {
 std::string first_line(const std::string& file) {
   std::ifstream in{file};
   std::string line;
-  if (!std::getline(in, line)) throw InputError(file, 0, "no token in it; make one: openssl rand -hex 16 > " + file);
+  std::getline(in, line);
+  line.erase(line.find_last_not_of(" \t\r") + 1);
+  if (line.empty()) throw InputError(file, 0, "no token in it; make one: openssl rand -hex 16 > " + file);
   return line;
 }
 
 void check_scope_options(const ScopeCommand& wanted) {
   if (!wanted.recording.can.empty() && !wanted.scenario.empty())
     throw CLI::ValidationError("--scenario", "--can shows a recording, --scenario a simulation; leave one out");
+  if (!wanted.recording.lcm.empty() && wanted.recording.can.empty())
+    throw CLI::ValidationError("--lcm", "belongs to a recording (--can); the daemon's network is --lcm-url");
   if (wanted.server.certificate.empty() != wanted.server.key.empty())
     throw CLI::ValidationError("--certificate", "--certificate and --key belong together");
   if (is_loopback(wanted.server.address)) return;
@@ -76,7 +80,10 @@ void serve(const ScopeCommand& wanted, Feed& feed, const sigset_t& ends, const s
   const ScopeServer server{feed, wanted.server};
   tell_url(wanted, server);
   const timespec tenth{0, 100'000'000};
-  while (sigtimedwait(&ends, nullptr, &tenth) < 0) tick();
+  while (sigtimedwait(&ends, nullptr, &tenth) < 0) {
+    if (!server.serves()) throw ComponentError("can no longer listen on " + server.url() + "; start it again");
+    tick();
+  }
 }
 
 void serve_live(const ScopeCommand& wanted, const Cell& cell, const sigset_t& ends) {

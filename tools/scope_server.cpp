@@ -158,7 +158,7 @@ struct ScopeServer::Parts {
   std::unique_ptr<httplib::Server> server;
   int port = 0;
   std::atomic<int> streams{0};
-  std::atomic<bool> stopping{false};
+  std::atomic<bool> stopping{false}, ended{false};
   std::jthread thread;
 };
 
@@ -268,15 +268,20 @@ ScopeServer::ScopeServer(Feed& feed, const ScopeOptions& options) {
   if (parts_->port < 0)
     throw ComponentError("cannot listen on " + options.address + " port " + std::to_string(options.port) +
                          ": it is taken, or the address is not of this host; choose another with --port or --address");
-  parts_->thread = std::jthread{[&server] { server.listen_after_bind(); }};
+  parts_->thread = std::jthread{[parts = parts_.get()] {
+    parts->server->listen_after_bind();
+    parts->ended = true;
+  }};
 }
 
 ScopeServer::~ScopeServer() {
   parts_->stopping = true;
-  while (parts_->server->is_valid() && !parts_->server->is_running() && parts_->thread.joinable())
+  while (!parts_->server->is_running() && !parts_->ended)
     std::this_thread::sleep_for(std::chrono::milliseconds{1});  // stop() before it runs would be lost
   parts_->server->stop();
 }
+
+bool ScopeServer::serves() const { return !parts_->ended; }
 
 int ScopeServer::port() const { return parts_->port; }
 

@@ -31,6 +31,8 @@ class ScopeServer {
   ScopeServer(const ScopeServer&) = delete;
   ScopeServer& operator=(const ScopeServer&) = delete;
 
+  // False once listening has failed for good (the address went away).
+  [[nodiscard]] bool serves() const;
   [[nodiscard]] int port() const;
   [[nodiscard]] std::string url() const;
 
