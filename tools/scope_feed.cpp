@@ -16,7 +16,6 @@ constexpr std::size_t kMostChunksWaiting = 400;          // chunks of a reader: 
 constexpr std::size_t kPastKept = 100;                   // events and corrections that a new viewer gets
 constexpr std::int64_t kStateEvery_ns = 250'000'000;     // where nothing is heard
 constexpr std::size_t kMostTimelineBytes = 256U << 20U;  // of a timeline
-constexpr double kLongestStep_s = 0.1;
 
 }  // namespace
 
