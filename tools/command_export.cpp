@@ -16,6 +16,7 @@
 #include "tools/output_file.hpp"
 #include "tools/playback.hpp"
 #include "tools/recorded_frames.hpp"
+#include "tools/recording_options.hpp"
 #include "tools/sample_window.hpp"
 
 namespace stillcut {
@@ -239,13 +240,7 @@ void add_export_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("export", "Write a recording, or a window of it, as CSV, WAV, UFF or MCAP");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("CELL", options->cell, "cell file")->required();
-  command
-      ->add_option("--can", options->source.can,
-                   "CAN log as 'candump -L' writes it, also compressed (.zst), or the folder of a recording")
-      ->required();
-  command->add_option("--lcm", options->source.lcm, "LCM log as lcm-logger writes it: robot states, acknowledgements");
-  command->add_option("--lcm-offset", options->source.lcm_offset_s, "seconds to add to the LCM log's times")
-      ->capture_default_str();
+  add_recording_options(*command, options->source);
   command->add_option("--from", options->from_s, "begin of the window, in seconds since the first frame as events say")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--to", options->to_s, "end of the window")->check(CLI::NonNegativeNumber);

@@ -1,6 +1,7 @@
 #include "tools/output_options.hpp"
 #include "tools/plot.hpp"
 #include "tools/programs.hpp"
+#include "tools/recording_options.hpp"
 
 namespace stillcut {
 
@@ -14,6 +15,16 @@ void check_output_options(const OutputOptions& options) {
   if (options.json && options.csv == "-")
     throw CLI::ValidationError("--json", "cannot share standard output with --csv -");
   if (!options.plot.empty()) plot::check_picture_name(options.plot);
+}
+
+void add_recording_options(CLI::App& command, PlaybackSource& source) {
+  command
+      .add_option("--can", source.can,
+                  "CAN log as 'candump -L' writes it, also compressed (.zst), or the folder of a recording")
+      ->required();
+  command.add_option("--lcm", source.lcm, "LCM log as lcm-logger writes it: robot states, acknowledgements");
+  command.add_option("--lcm-offset", source.lcm_offset_s, "seconds to add to the LCM log's times")
+      ->capture_default_str();
 }
 
 int run_stillcut(int argc, char** argv) {

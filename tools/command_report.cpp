@@ -7,6 +7,7 @@
 #include "tools/output_file.hpp"
 #include "tools/playback.hpp"
 #include "tools/recorded_frames.hpp"
+#include "tools/recording_options.hpp"
 #include "tools/report_collector.hpp"
 #include "tools/report_page.hpp"
 #include "tools/report_words.hpp"
@@ -50,13 +51,7 @@ void add_report_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("report", "What happened in a recording, as one page for people");
   auto options = std::make_shared<ReportOptions>();
   command->add_option("CELL", options->cell, "cell file")->required();
-  command
-      ->add_option("--can", options->source.can,
-                   "CAN log as 'candump -L' writes it, also compressed (.zst), or the folder of a recording")
-      ->required();
-  command->add_option("--lcm", options->source.lcm, "LCM log as lcm-logger writes it: robot states, acknowledgements");
-  command->add_option("--lcm-offset", options->source.lcm_offset_s, "seconds to add to the LCM log's times")
-      ->capture_default_str();
+  add_recording_options(*command, options->source);
   command->add_option("--out", options->out, "write the page: HTML, all in one file ('-': standard output)");
   command->add_option("--pictures", options->pictures, "episodes of chatter to picture, the worst")
       ->check(CLI::Range(0, 100))

@@ -169,11 +169,11 @@ LiveRun::Parts::Parts(const Cell& cell, const std::string& bus_name, const LcmCo
   live.emplace(*bus, pipeline, *channels, !bus_name.starts_with("log:"), records(cell, options),
                !options.allow_not_real_time, realtime_ns, options.telemetry);
   if (options.telemetry)
-    telemetry.emplace(cell, pipeline.decoder(), *channels, lcm, [this, recording = records(cell, options)] {
+    telemetry.emplace(cell, pipeline.decoder(), *channels, lcm, [this] {
       return LiveLosses{bus->state(),
                         bus->counters(),
                         static_cast<std::int64_t>(channels->outputs.refused()),
-                        static_cast<std::int64_t>(recording ? channels->recorded.refused() : 0),
+                        static_cast<std::int64_t>(channels->recorded.refused()),
                         static_cast<std::int64_t>(channels->watched.refused()),
                         subscriber->bad(),
                         publisher.publisher().failed()};
