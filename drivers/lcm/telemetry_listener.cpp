@@ -75,9 +75,9 @@ TelemetryListener::~TelemetryListener() {
 void TelemetryListener::receive(const lcm_recv_buf_t* buffer, const char* channel, void* listener) noexcept {
   auto& self = *static_cast<TelemetryListener*>(listener);
   const auto message = decode_telemetry(channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
-  (message.ok() ? self.received_ : self.bad_).fetch_add(1, std::memory_order_relaxed);
   if (message.ok() && self.handlers_.on_message) self.handlers_.on_message(message.value);
   if (!message.ok() && self.handlers_.on_bad) self.handlers_.on_bad(channel, message.why_not);
+  (message.ok() ? self.received_ : self.bad_).fetch_add(1, std::memory_order_release);
 }
 
 }  // namespace stillcut

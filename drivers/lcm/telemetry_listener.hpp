@@ -27,9 +27,9 @@ class TelemetryListener {
   TelemetryListener(const TelemetryListener&) = delete;
   TelemetryListener& operator=(const TelemetryListener&) = delete;
 
-  // Any thread.
-  [[nodiscard]] std::int64_t received() const noexcept { return received_.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::int64_t bad() const noexcept { return bad_.load(std::memory_order_relaxed); }
+  // Messages that a handler is done with. Any thread, which then sees what those handlers did.
+  [[nodiscard]] std::int64_t received() const noexcept { return received_.load(std::memory_order_acquire); }
+  [[nodiscard]] std::int64_t bad() const noexcept { return bad_.load(std::memory_order_acquire); }
 
  private:
   static void receive(const lcm_recv_buf_t* buffer, const char* channel, void* listener) noexcept;
