@@ -1,4 +1,4 @@
-// A line between the bins of a Hann-windowed spectrum.
+// The Hann window, and a line between the bins of its spectrum.
 #pragma once
 
 #include <cmath>
@@ -9,6 +9,12 @@
 #include "dsp/axes_fft.hpp"
 
 namespace stillcut {
+
+// Sample i of a Hann window of `length` samples, scaled so that a sine of amplitude 1 has a peak of 1 (0 dB).
+[[nodiscard]] inline float hann_weight(std::size_t i, std::size_t length) noexcept {
+  const double turn = static_cast<double>(i) / static_cast<double>(length);
+  return static_cast<float>(2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * turn)) / static_cast<double>(length));
+}
 
 // How three neighbouring bins share a line, and how to add them up again.
 struct HannLine {

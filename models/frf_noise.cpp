@@ -6,6 +6,8 @@
 #include <complex>
 #include <numbers>
 
+#include "models/median.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -32,12 +34,6 @@ std::vector<Index> blocks_of(Index count) {
     starts.push_back(next);
   }
   return starts;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Of squares of Gaussian complex numbers the mean, smooth over the lines: by the medians of the blocks, between their

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "models/machining.hpp"
+#include "models/median.hpp"
 #include "models/sentence.hpp"
 
 namespace stillcut {
@@ -159,9 +160,7 @@ std::vector<std::string> response_doubts(const FrfLines& lines) {
     doubts.push_back(sentence("the responses end at ", end, " Hz: are their frequencies in Hz?"));
   std::vector<double> spacing;
   for (Index n = 1; n < count; ++n) spacing.push_back(lines.omega[n] - lines.omega[n - 1]);
-  std::vector<double> sorted = spacing;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double usual = sorted[sorted.size() / 2];
+  const double usual = median(spacing);
   for (Index n = 1; n < count; ++n) {
     const std::size_t k = static_cast<std::size_t>(n - 1);
     const double around =

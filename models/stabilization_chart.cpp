@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "models/median.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr double kAgreeingHalfWidths = 0.5;  // of a mode's half-width (zeta w),
 constexpr double kAgreeingFrequency = 2e-3;  // relative, beside that
 constexpr double kAgreeingShare = 0.4;       // of the orders from the first at which the pole appears
 constexpr int kLeastAgreeing = 3;            // orders
-
-double median_value(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -50,7 +46,7 @@ std::vector<ChartPole> agreed_poles(const StabilizationChart& chart) {
     const auto from = std::find(rows.begin(), rows.end(), true);
     const auto seen = static_cast<double>(std::count(from, rows.end(), true));
     if (seen >= kLeastAgreeing && seen >= kAgreeingShare * static_cast<double>(rows.end() - from))
-      agreed.push_back({median_value(frequencies), median_value(dampings), true, true, true});
+      agreed.push_back({median(frequencies), median(dampings), true, true, true});
     first = end;
   }
   return agreed;

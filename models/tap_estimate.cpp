@@ -12,6 +12,7 @@
 
 #include "dsp/numbers.hpp"
 #include "models/machining.hpp"
+#include "models/median.hpp"
 #include "models/sentence.hpp"
 
 namespace stillcut {
@@ -55,12 +56,6 @@ TapWindows tap_windows(const TapSettings& settings, double rate, std::size_t len
 
 // At rest a sensor shows its offset, which for an accelerometer may be gravity. A hit leaves no velocity, so the mean
 // acceleration is the offset; force has one sign, but is at rest most of the time.
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 std::array<double, 3> rest_of_accelerations(const std::array<std::vector<double>, 3>& acceleration) {
   std::array<double, 3> rest{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -132,7 +127,7 @@ ComplexValues receptance_at_shifted_lines(std::span<const double> frequencies_hz
 double noise_of_force(const std::vector<double>& force, double rest) {
   std::vector<double> off(force.size());
   std::ranges::transform(force, off.begin(), [&](double value) { return std::abs(value - rest); });
-  return 1.4826 * middle_of(std::move(off));
+  return 1.4826 * median(std::move(off));
 }
 
 // Relative: what noise inside the force window adds to the force's transform, where the window is so short that many
@@ -143,7 +138,7 @@ double shared_force_error(const TapSums& sums, const TapSettings& settings, doub
   const double least = kExcitedShare * std::ranges::max(sums.force_power);
   std::vector<double> power;
   std::ranges::copy_if(sums.force_power, std::back_inserter(power), [&](double value) { return value >= least; });
-  const double usual = middle_of(std::move(power));
+  const double usual = median(std::move(power));
   return usual > 0.0 ? std::sqrt(0.5 * sums.force_noise_power / (usual * static_cast<double>(sums.hits))) : 0.0;
 }
 
@@ -159,7 +154,7 @@ TapSums summed_over_hits(std::span<const TapRecording> recordings, std::span<con
   sums.axes.fill(TapSums::Axis{std::vector<double>(lines, 0.0), ComplexValues(lines)});
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const TapRecording& recording = recordings[r];
-    const double force_rest = middle_of(recording.force), force_noise = noise_of_force(recording.force, force_rest);
+    const double force_rest = median(recording.force), force_noise = noise_of_force(recording.force, force_rest);
     const std::array<double, 3> rest = rest_of_accelerations(recording.acceleration);
     for (const TapHit& hit : hits) {
       if (hit.recording != r || hit.fault != TapFault::none) continue;

@@ -45,9 +45,12 @@ void check_options(const ExportOptions& options) {
     throw CLI::ValidationError("'-' and --json", "only one thing can go to standard output; name files for the others");
   if (options.wav == "-" || options.mcap == "-")
     throw CLI::ValidationError("--wav and --mcap", "are no text for standard output; name a file");
+  const auto place = [](const std::string& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+  };
   for (std::size_t i = 0; i < files.size(); ++i)
     for (std::size_t j = i + 1; j < files.size(); ++j)
-      if (!files[i]->empty() && *files[i] == *files[j])
+      if (!files[i]->empty() && !files[j]->empty() && place(*files[i]) == place(*files[j]))
         throw CLI::ValidationError(*files[i], "is named for two outputs; name a file for each");
   if (!(options.to_s > options.from_s)) throw CLI::ValidationError("--to", "must be after --from");
 }

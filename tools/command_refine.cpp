@@ -99,12 +99,10 @@ void decide(const RefineOptions& options, const std::filesystem::path& folder, c
 std::vector<ChatteredCut> chattered_cuts(const RefineOptions& options, const Cell& cell) {
   std::vector<ChatteredCut> cuts;
   const auto add = [&](std::vector<ChatteredCut> more) { cuts.insert(cuts.end(), more.begin(), more.end()); };
-  Progress progress("listening");
-  for (std::size_t i = 0; i < options.can.size(); ++i)
-    add(chattered_in_log(cell, options.can[i], options.lcm, [&](double share) {
-      progress.update((static_cast<double>(i) + share) / static_cast<double>(options.can.size()));
-    }));
-  progress.finish();
+  std::vector<std::string> warnings;
+  for (const std::string& can : options.can)
+    add(chattered_in_log(cell, {.can = can, .lcm = options.lcm, .lcm_offset_s = 0.0}, warnings));
+  for (const std::string& warning : warnings) std::cerr << "stillcut: " << warning << '\n';
   for (const std::string& file : options.events) add(chattered_in_events(cell, file));
   return cuts;
 }

@@ -54,12 +54,8 @@ void check_scope_options(const ScopeCommand& wanted) {
 }
 
 FeedTitle title_of(const Cell& cell, std::string source, std::string where) {
-  FeedTitle title{std::filesystem::absolute(cell.file).parent_path().filename().string(),
-                  std::move(source),
-                  std::move(where),
-                  cell.tool ? cell.tool->teeth : 0,
-                  0.0,
-                  0.0};
+  FeedTitle title{std::filesystem::absolute(cell.file).parent_path().filename().string(), std::move(source),
+                  std::move(where), cell.tool ? cell.tool->teeth : 0};
   if (cell.spindle) {
     title.min_rpm = rad_s_to_rpm(cell.spindle->min_speed);
     title.max_rpm = rad_s_to_rpm(cell.spindle->max_speed);

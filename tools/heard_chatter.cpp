@@ -4,11 +4,8 @@
 #include <cmath>
 
 #include "drivers/files/csv.hpp"
+#include "models/median.hpp"
 #include "tools/cell_posture.hpp"
-#include "tools/pipeline.hpp"
-#include "tools/predictor.hpp"
-#include "tools/recorded_frames.hpp"
-#include "tools/robot_playback.hpp"
 
 namespace stillcut {
 namespace {
@@ -18,13 +15,6 @@ constexpr std::size_t kLeastHops = 10;  // views with a frequency
 constexpr double kSteadySpeed = 0.003;  // relative
 // Relative, half of the views within it: where the cut changes, its immersion say, the frequency wanders.
 constexpr double kStandingFrequency = 0.003;
-constexpr double kBytesOfLogFrame = 150.0;  // about; for the bar only
-
-double median_frequency(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Posture own_posture(const Cell& cell) { return posture_of(cell, read_cell_dynamics(cell).map); }
 
@@ -62,9 +52,9 @@ void ChatterCollector::look(const MonitorView& view, const RobotState* robot, st
 
 void ChatterCollector::close() {
   if (listening_ && frequencies_.size() >= kLeastHops) {
-    const double hz = median_frequency(frequencies_);
+    const double hz = median(frequencies_);
     for (double& frequency : frequencies_) frequency = std::abs(frequency - hz);
-    if (median_frequency(frequencies_) <= kStandingFrequency * hz) {
+    if (median(frequencies_) <= kStandingFrequency * hz) {
       open_.heard.frequency = kTwoPi * hz;
       open_.heard.axial_depth = open_.cut.axial_depth;
       cuts_.push_back(open_);
@@ -79,29 +69,18 @@ std::vector<ChatteredCut> ChatterCollector::finish() {
   return std::move(cuts_);
 }
 
-std::vector<ChatteredCut> chattered_in_log(const Cell& cell, const std::string& can, const std::string& lcm,
-                                           const std::function<void(double)>& progress) {
-  Pipeline pipeline{cell};
-  Core& core = pipeline.core();
-  Predictor predictor{cell};
-  const PlaybackFiles files = playback_files(can, lcm);
-  RecordedFrames log{files.can};
-  RobotPlayback robot{files.lcm, 0.0, predictor};
-  core.add_lobes(predictor.nominal().diagram);
+std::vector<ChatteredCut> chattered_in_log(const Cell& cell, const PlaybackSource& source,
+                                           std::vector<std::string>& warnings) {
   ChatterCollector collector{cell, own_posture(cell)};
-  const auto listen = [&] {
-    collector.look(core.view(), core.robot(), core.origin_ns());
-    core.clear_outputs();
-  };
-  std::int64_t last_ns = 0;
-  CanFrame frame;
-  while (log.next(frame)) {
-    if (frame.stamp_ns >= last_ns) robot.feed_until(last_ns = frame.stamp_ns, core, listen);
-    if (pipeline.feed(frame)) listen();
-    core.clear_outputs();
-    if ((log.frames() & 0x3FF) == 0) progress(static_cast<double>(log.frames()) * kBytesOfLogFrame / log.bytes());
-  }
-  robot.finish(core, listen);
+  const PlaybackSummary played = play(cell, source, true, kInfinity,
+                                      {.on_frame =
+                                           [&](const Pipeline& pipeline) {
+                                             const Core& core = pipeline.core();
+                                             collector.look(core.view(), core.robot(), core.origin_ns());
+                                           },
+                                       .on_output = {},
+                                       .on_robot = {}});
+  warnings.insert(warnings.end(), played.warnings.begin(), played.warnings.end());
   return collector.finish();
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "models/dynamics_map.hpp"
 #include "models/map_refinement.hpp"
 #include "rt/signals.hpp"
+#include "tools/playback.hpp"
 
 namespace stillcut {
 
@@ -47,9 +47,9 @@ class ChatterCollector {
   bool in_episode_ = false, listening_ = false;
 };
 
-// `can`, `lcm` as `stillcut replay` takes them. Throws InputError.
-std::vector<ChatteredCut> chattered_in_log(const Cell& cell, const std::string& can, const std::string& lcm,
-                                           const std::function<void(double)>& progress);
+// `warnings`: lines for the user. Throws InputError.
+std::vector<ChatteredCut> chattered_in_log(const Cell& cell, const PlaybackSource& source,
+                                           std::vector<std::string>& warnings);
 
 // Of an events file (contracts.md): onsets of kind regenerative, at the cell's own posture and depth.
 std::vector<ChatteredCut> chattered_in_events(const Cell& cell, const std::filesystem::path& file);

@@ -1,6 +1,6 @@
 #include "tools/playback.hpp"
 
-#include <cmath>
+#include <chrono>
 
 #include "tools/output_comparison.hpp"
 #include "tools/predictor.hpp"
@@ -52,6 +52,7 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
   };
 
   Progress progress{"playing"};
+  const auto started = std::chrono::steady_clock::now();
   std::int64_t last_ns = 0;
   bool to_the_end = true;
   CanFrame frame;
@@ -75,6 +76,7 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
   if (robot && to_the_end) robot->playback.finish(core, take_outputs);
   take_outputs();
 
+  summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   summary.origin_ns = core.origin_ns();
   summary.played_s = static_cast<double>(last_ns - core.origin_ns()) * 1e-9;
   summary.frames = log.frames();
@@ -86,6 +88,9 @@ PlaybackSummary play(const Cell& cell, const PlaybackSource& source, bool decide
   const RobotPlayback& played = robot->playback;
   summary.is_recording = played.is_recording();
   summary.inputs_lost = played.lost();
+  summary.outputs_recorded = played.published().size();
+  summary.outputs_decided = comparison.count();
+  summary.outputs_same = comparison.same_as(played.published());
   summary.loop_times = played.loop_times();
   if (played.bad() > 0)
     summary.warnings.push_back(files.lcm.front().string() + ": " + std::to_string(played.bad()) +

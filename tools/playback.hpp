@@ -1,5 +1,5 @@
-// A recording played through the daemon's own code, once, from its beginning: what `stillcut export` and
-// `stillcut report` listen to. Memory is bounded whatever its length.
+// A recording played through the daemon's own code, once, from its beginning: what all commands that take a recording
+// listen to. Memory is bounded whatever its length.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +30,12 @@ struct PlaybackListener {
 struct PlaybackSummary {
   std::int64_t origin_ns = 0;  // stamp of the first frame
   double played_s = 0.0;       // from there to the last frame that was played
+  double wall_s = 0.0;         // that playing took
   std::int64_t frames = 0, frames_bad = 0, frames_lost = 0, frames_out_of_order = 0;
   bool is_recording = false, from_the_start = true;
-  std::int64_t inputs_lost = 0;             // that the recorder had to leave out
+  std::int64_t inputs_lost = 0;  // that the recorder had to leave out
+  // Outputs: of the live run, of this one, and how many from the first on are the same, bit for bit.
+  std::size_t outputs_recorded = 0, outputs_decided = 0, outputs_same = 0;
   std::optional<LatencyReport> loop_times;  // the newest that the recording holds
   std::vector<std::string> warnings;        // lines for the user
 };

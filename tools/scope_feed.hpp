@@ -37,7 +37,7 @@ class Feed {
 struct FeedTitle {
   std::string title, source, where;  // source: "daemon", "recording", "simulation"
   int teeth = 0;
-  double min_rpm = 0.0, max_rpm = 0.0;
+  double min_rpm = kNaN, max_rpm = kNaN;  // NaN, null as JSON: the cell names no limits
 };
 nlohmann::ordered_json about_json(const FeedTitle& title);
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "dsp/hann_line.hpp"
+
 namespace stillcut {
 namespace {
 
@@ -46,10 +48,7 @@ SensorStream::SensorStream(int sensor, double sample_rate_hz, int teeth)
       kernel_{thinning_kernel(thinning_)},
       until_thinned_{thinning_} {
   bins_.resize(static_cast<std::size_t>(fft_.bins()));
-  for (std::size_t i = 0; i < length_; ++i)  // scaled so that a sine of amplitude 1 has a peak of 1 (0 dB)
-    window_[i] = static_cast<float>(
-        2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length_))) /
-        static_cast<double>(length_));
+  for (std::size_t i = 0; i < length_; ++i) window_[i] = hann_weight(i, length_);
   vibration_.sensor = sensor;
   vibration_.rate_hz = sample_rate_hz / thinning_;
   health_.nominal_rate_hz = sample_rate_hz;

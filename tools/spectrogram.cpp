@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dsp/fft.hpp"
+#include "dsp/hann_line.hpp"
 
 namespace stillcut {
 
@@ -30,10 +31,7 @@ plot::Image spectrogram(std::span<const float> signal, double sample_rate_hz, do
   image.values.resize(static_cast<std::size_t>(image.columns) * static_cast<std::size_t>(image.rows));
 
   std::vector<float> window(length), windowed(length);
-  for (std::size_t i = 0; i < length; ++i)  // scaled so that a sine of amplitude 1 has a peak of 1 (0 dB)
-    window[i] = static_cast<float>(
-        2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length))) /
-        static_cast<double>(length));
+  for (std::size_t i = 0; i < length; ++i) window[i] = hann_weight(i, length);
   std::vector<std::complex<float>> spectrum(static_cast<std::size_t>(fft.bins()));
   double strongest = -200.0;
   for (int column = 0; column < image.columns; ++column) {

@@ -196,6 +196,7 @@ TEST(Export, WhatCannotBeExportedIsRefusedInOneLineAndLeavesNoFile) {
            {{"--csv", "-", "--json"}, 2, "standard output"},
            {{"--wav", "-"}, 2, "name a file"},
            {{"--csv", "out", "--uff", "out"}, 2, "two outputs"},
+           {{"--csv", "out", "--uff", "./no/../out"}, 2, "two outputs"},
            {{"--wav", "out", "--sensor", "2"}, 2, "1 accelerometer"},
            {{"--wav", "none/out"}, 3, "none/out: cannot be written"},
            {{"--csv", "/dev/full"}, 3, "/dev/full: cannot be written to the end; is the disk full?"},

@@ -209,6 +209,13 @@ TEST_F(ScopeServerTest, BadPlacesAndTooManyViewersAreRefused) {
   feed_.take(stable_cut());
 }
 
+TEST(About, IsSilentOfLimitsThatTheCellDoesNotName) {
+  const auto told = [](const FeedTitle& title) { return nlohmann::json::parse(about_json(title).dump()); };
+  EXPECT_EQ(told({.title = "cell", .source = "daemon", .where = "memq://", .teeth = 2, .min_rpm = 2800.0})["min_rpm"],
+            2800.0);
+  EXPECT_TRUE(told({.title = "cell", .source = "daemon", .where = "memq://"})["min_rpm"].is_null());
+}
+
 TEST_F(ScopeServerTest, ATimelinePlaysFromWhereItIsAskedAndEnds) {
   TimelineFeed timeline{FeedTitle{"cell", "recording", "cut.log", 2, 0.0, 0.0}};
   const std::int64_t origin_ns = 1'700'000'000'000'000'000;
