@@ -1,8 +1,10 @@
 // What the loop says of its time, as it is published and read back from a recording.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <random>
+#include <string_view>
 
 #include "drivers/lcm/telemetry_messages.hpp"
 
@@ -47,6 +49,17 @@ TEST(LoopTimesMessage, ComesBackAsItWasTold) {
       EXPECT_EQ(report.stages[i].max_us, static_cast<double>(named[i].times.max_ns) * 1e-3);
     }
   }
+}
+
+TEST(LoopTimesMessage, RefusesNamesThatEndBeforeTheirEnd) {
+  MessageBytes bytes = encode(latency_report(*some_times(1), 1'700'000'000'000'000'000));
+  const std::string_view name = "wake-up";
+  const auto found = std::search(bytes.begin(), bytes.end(), name.begin(), name.end());
+  ASSERT_NE(found, bytes.end());
+  found[4] = 0;
+  EXPECT_FALSE(decode_latency(bytes).ok());
+  found[4] = '-', found[7] = 'x';  // and none at its end
+  EXPECT_FALSE(decode_latency(bytes).ok());
 }
 
 TEST(LoopTimesMessage, SurvivesAnyDamage) {
